@@ -1,0 +1,1 @@
+"""The YAML language: models, positions, messages and the JSON Schema."""

@@ -1,0 +1,217 @@
+"""The graph file, as pydantic models: names, types, ranges, units, defaults and help of everything outside ``set:``.
+
+Shapes only. Positions, semantic checks and node parameters come later (``load.py``, ``rendergraph.plan.expand``).
+Angles are degrees, lengths metres, colours linear Rec. 709.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from rendergraph.document.formats import FORMATS
+
+MAX_SIZE = 16384
+MAX_FRAMES = 10000
+
+Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=64)]
+#: A resource, or a node's internal one: ``light.histogram``.
+ResourceName = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$", max_length=130)]
+Extent = Annotated[int, Field(ge=1, le=MAX_SIZE)]
+Vec3 = tuple[float, float, float]
+Unit = Annotated[float, Field(ge=0, le=1)]
+NonNegative = Annotated[float, Field(ge=0)]
+Rgb = tuple[NonNegative, NonNegative, NonNegative]
+
+
+class Model(BaseModel):
+    """Base of the file's models: no unknown keys, no infinities, frozen."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class FrameModel(Model):
+    """The frame: size, how many, seed, depth convention."""
+
+    size: tuple[Extent, Extent] = Field((1280, 720), description="Width and height of the frame in pixels.")
+    count: int = Field(1, ge=1, le=MAX_FRAMES, description="Frames to render.")
+    seed: int = Field(0, ge=0, le=2**32 - 1, description="Seed of everything random in the graph.")
+    depth: Literal["reversed", "standard"] = Field(
+        "reversed", description="Depth convention: reversed (1 near, 0 far; more precise) or standard (0 near, 1 far)."
+    )
+
+
+class OrbitModel(Model):
+    """A circular path of the camera around its target."""
+
+    turns: float = Field(1.0, description="Turns over all frames of the run.")
+    axis: Literal["y"] = Field("y", description="Axis of the orbit.")
+
+
+class CameraModel(Model):
+    """A perspective camera: placed by position and target, or taken from the scene file by name."""
+
+    name: str | None = Field(None, description="A camera of the scene file, by node or camera name.")
+    position: Vec3 | None = Field(None, description="Eye position in metres.")
+    target: Vec3 | None = Field(None, description="Point looked at, in metres.")
+    up: Vec3 = Field((0.0, 1.0, 0.0), description="Up direction.")
+    fov: float = Field(60.0, gt=0, lt=180, description="Vertical field of view in degrees.")
+    near: float = Field(0.05, gt=0, description="Near plane distance in metres.")
+    far: float | None = Field(None, gt=0, description="Far plane distance in metres; none for infinity.")
+    orbit: OrbitModel | None = Field(None, description="Move on a circle around the target.")
+
+    @model_validator(mode="after")
+    def _consistent(self) -> CameraModel:
+        if self.far is not None and self.far <= self.near:
+            raise ValueError(f"far ({self.far:g} m) must lie beyond near ({self.near:g} m)")
+        if self.position is not None and self.position == self.target:
+            raise ValueError("position and target are the same point")
+        return self
+
+
+class SunModel(Model):
+    """A directional light."""
+
+    direction: Vec3 = Field((-0.4, -1.0, -0.3), description="Direction the light travels; need not be normalised.")
+    illuminance: NonNegative = Field(5.0, description="Irradiance on a facing surface, in scene-linear units.")
+    color: Rgb = Field((1.0, 0.96, 0.9), description="Linear colour.")
+
+    @model_validator(mode="after")
+    def _direction(self) -> SunModel:
+        if not any(self.direction):
+            raise ValueError("direction must not be the zero vector")
+        return self
+
+
+class AmbientModel(Model):
+    """A hemisphere of constant light: sky above, ground below."""
+
+    sky: Rgb = Field((0.10, 0.13, 0.18), description="Radiance from above.")
+    ground: Rgb = Field((0.06, 0.055, 0.05), description="Radiance from below.")
+
+
+class PointsModel(Model):
+    """Point lights scattered over the scene's bounds by the seed."""
+
+    count: int = Field(..., ge=0, le=65536, description="Number of lights.")
+    seed: int = Field(0, ge=0, le=2**32 - 1, description="Seed of positions and colours.")
+    intensity: NonNegative = Field(1.0, description="Radiant intensity of each light.")
+    radius: float | None = Field(None, gt=0, description="Reach in metres; none: where the light falls below `cutoff`.")
+    cutoff: float = Field(0.02, gt=0, description="Irradiance below which a light without `radius` ends.")
+
+
+class PointModel(Model):
+    """One point light."""
+
+    position: Vec3 = Field(..., description="Position in metres.")
+    color: Rgb = Field((1.0, 1.0, 1.0), description="Linear colour.")
+    intensity: NonNegative = Field(1.0, description="Radiant intensity.")
+    radius: float = Field(5.0, gt=0, description="Reach in metres: exactly dark beyond.")
+
+
+class SpotModel(PointModel):
+    """One spot light."""
+
+    direction: Vec3 = Field((0.0, -1.0, 0.0), description="Axis of the cone.")
+    inner: float = Field(20.0, ge=0, lt=90, description="Half angle of full brightness, in degrees.")
+    outer: float = Field(30.0, gt=0, lt=90, description="Half angle beyond which it is exactly dark, in degrees.")
+
+    @model_validator(mode="after")
+    def _cone(self) -> SpotModel:
+        if self.inner > self.outer:
+            raise ValueError(f"inner ({self.inner:g}) must not exceed outer ({self.outer:g})")
+        if not any(self.direction):
+            raise ValueError("direction must not be the zero vector")
+        return self
+
+
+class LightsModel(Model):
+    """All lights beside those in the scene file."""
+
+    sun: SunModel | None = Field(None, description="A directional light.")
+    ambient: AmbientModel | None = Field(None, description="A constant hemisphere.")
+    points: PointsModel | None = Field(None, description="Scattered point lights.")
+    list: tuple[PointModel | SpotModel, ...] = Field((), description="Point and spot lights one by one.")
+    from_scene: bool = Field(True, description="Use the lights of the scene file or procedural scene too.")
+
+
+class SceneModel(Model):
+    """What is drawn: a shipped procedural scene or a glTF file, a camera and lights."""
+
+    source: str = Field(..., min_length=1, description="`atrium`, `cornell`, `spheres`, or a .gltf/.glb relative to this file.")
+    detail: Unit = Field(1.0, description="Geometric detail of a procedural scene, 0 to 1.")
+    seed: int = Field(0, ge=0, le=2**32 - 1, description="Seed of a procedural scene.")
+    camera: CameraModel = Field(default_factory=lambda: CameraModel(), description="The camera.")
+    lights: LightsModel = Field(default_factory=lambda: LightsModel(), description="The lights.")
+
+
+class ResourceModel(Model):
+    """A resource: a texture (format and size), a buffer (bytes), last frame's content (previous), or a file's."""
+
+    format: str | None = Field(None, description="Texture format.", json_schema_extra={"enum": sorted(FORMATS)})
+    scale: float | None = Field(None, gt=0, le=16, description="Size as a multiple of the frame's, or of `like`'s.")
+    like: Name | None = Field(None, description="Another texture whose size (and format, unless given) this one has.")
+    fixed: tuple[Extent, Extent] | None = Field(None, description="Size in texels, whatever the frame's.")
+    layers: int = Field(1, ge=1, le=2048, description="Array layers.")
+    mips: int = Field(1, ge=0, le=15, description="Mip levels; 0 for the whole chain.")
+    samples: Literal[1, 2, 4, 8] = Field(1, description="Samples a texel.")
+    bytes: int | None = Field(None, ge=4, le=2**31 - 1, multiple_of=4, description="Size of a buffer in bytes.")
+    previous: Name | None = Field(None, description="The resource whose last frame's content this is.")
+    file: str | None = Field(None, min_length=1, description="An image file (.png, .jpg, .hdr) relative to this file.")
+
+
+class PassModel(Model):
+    """One use of a node."""
+
+    node: str = Field(..., min_length=1, description="The node's name; `rg nodes` lists them.")
+    read: dict[str, ResourceName] = Field(default_factory=dict, description="Input port to resource.")
+    write: dict[str, ResourceName] = Field(default_factory=dict, description="Output port to resource.")
+    set: dict[str, Any] = Field(default_factory=dict, description="The node's parameters.")
+    after: tuple[Name, ...] = Field((), description="Passes that must run before this one.")
+    keep: bool = Field(False, description="Run even if nothing reads what it writes.")
+
+
+BarrierKind = Literal[
+    "shader_storage", "shader_image", "texture_fetch", "uniform", "command", "vertex_attrib", "element_array",
+    "buffer_update", "texture_update", "framebuffer", "texture_barrier",
+]  # fmt: skip
+
+
+class BarrierModel(Model):
+    """A memory barrier the author says is needed; compared with what the planner derives."""
+
+    resource: ResourceName = Field(..., description="The resource protected.")
+    after: ResourceName = Field(..., description="The pass or sub-pass (`pass.step`) that wrote it.")
+    before: ResourceName = Field(..., description="The pass or sub-pass that uses it next.")
+    kind: BarrierKind = Field(..., description="How it is used next: a bit of glMemoryBarrier, or texture_barrier.")
+
+
+class OutputModel(Model):
+    """A file written from a resource after the last frame (or every frame, when the name holds `{frame}`)."""
+
+    file: str = Field(..., min_length=1, description="File name inside the output folder; .png, .exr or .npy.")
+    format: str | None = Field(None, description="Format, when the resource is not declared.", json_schema_extra={"enum": sorted(FORMATS)})
+
+
+class BudgetModel(Model):
+    """Limits that fail the run."""
+
+    frame_ms: float | None = Field(None, gt=0, description="Time of a frame in milliseconds.")
+    transient_mib: float | None = Field(None, gt=0, description="Memory of transient resources in MiB.")
+    draws: int | None = Field(None, ge=0, description="Draw calls a frame.")
+    flip: float | None = Field(None, ge=0, le=1, description="Mean FLIP error of the image against its reference.")
+
+
+class DocumentModel(Model):
+    """A graph file."""
+
+    rendergraph: Literal[1] = Field(..., description="Version of the language.")
+    title: str = Field("", max_length=200, description="What the graph shows.")
+    frame: FrameModel = Field(default_factory=lambda: FrameModel(), description="The frame.")
+    scene: SceneModel | None = Field(None, description="What is drawn.")
+    resources: dict[Name, ResourceModel] = Field(default_factory=dict, description="Named textures and buffers.")
+    passes: dict[Name, PassModel] = Field(..., min_length=1, description="The passes, in any order.")
+    barriers: tuple[BarrierModel, ...] | None = Field(None, description="Barriers by the author, checked against the derived ones.")
+    outputs: dict[ResourceName, OutputModel] = Field(..., min_length=1, description="Resources written to files.")
+    budget: BudgetModel = Field(default_factory=lambda: BudgetModel(), description="Limits that fail the run.")

@@ -1,0 +1,372 @@
+"""The sub-pass builder a node's ``build`` is handed: declares internal targets and adds draws, dispatches and copies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from rendergraph.plan.graph import (
+    Access,
+    BufferDesc,
+    ClearResource,
+    CopyBuffer,
+    CopyTexture,
+    Decision,
+    Dispatch,
+    DispatchIndirect,
+    DrawIndirect,
+    Frame,
+    Fullscreen,
+    GenerateMips,
+    Position,
+    Program,
+    Resource,
+    State,
+    SubPass,
+    Target,
+    TextureDesc,
+    UniformValue,
+    Usage,
+    Work,
+)
+from rendergraph.scene.features import SceneFeatures
+
+SHADERS = Path(__file__).resolve().parent.parent / "shaders"
+
+Color4 = tuple[float, float, float, float]
+
+
+# ---------------------------------------------------------------- bindings: what a shader sees under a name
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """How a shader uses a resource; made by the functions below, given to ``Builder.raster`` and ``compute`` by name."""
+
+    resource: str
+    usage: Usage
+    load: bool = True
+    mip: int | None = None
+    layer: int | None = None
+    aspect: str = "color"
+    filter: str = "nearest"
+    wrap: str = "clamp"
+
+
+def sample(
+    resource: str,
+    filter: str = "nearest",
+    *,
+    wrap: str = "clamp",
+    mip: int | None = None,
+    layer: int | None = None,
+    aspect: str = "color",
+) -> Binding:
+    """A texture read through a sampler. ``filter``: nearest, linear, mipmap, or compare (shadow sampler)."""
+    return Binding(resource, Usage.SAMPLED, mip=mip, layer=layer, aspect=aspect, filter=filter, wrap=wrap)
+
+
+def load_image(resource: str, *, mip: int = 0, layer: int | None = None) -> Binding:
+    """An image read with ``imageLoad``."""
+    return Binding(resource, Usage.IMAGE_READ, mip=mip, layer=layer)
+
+
+def store_image(resource: str, *, mip: int | None = 0, layer: int | None = None, partial: bool = False) -> Binding:
+    """An image written with ``imageStore``; ``partial`` when texels may be left as they were."""
+    return Binding(resource, Usage.IMAGE_WRITE, load=partial, mip=mip, layer=layer)
+
+
+def update_image(resource: str, *, mip: int = 0, layer: int | None = None) -> Binding:
+    """An image both read and written, or used with atomics."""
+    return Binding(resource, Usage.IMAGE_UPDATE, mip=mip, layer=layer)
+
+
+def read_buffer(resource: str) -> Binding:
+    """A shader storage block, read only."""
+    return Binding(resource, Usage.STORAGE_READ)
+
+
+def write_buffer(resource: str, *, partial: bool = False) -> Binding:
+    """A shader storage block whose content is replaced."""
+    return Binding(resource, Usage.STORAGE_WRITE, load=partial)
+
+
+def update_buffer(resource: str) -> Binding:
+    """A shader storage block both read and written, or used with atomics."""
+    return Binding(resource, Usage.STORAGE_UPDATE)
+
+
+def uniform_block(resource: str) -> Binding:
+    """A buffer read as a uniform block."""
+    return Binding(resource, Usage.UNIFORM)
+
+
+# ---------------------------------------------------------------- attachments
+
+
+@dataclass(frozen=True, slots=True)
+class Attachment:
+    """A colour or depth target of a draw: started from ``clear``, kept (``load``), or wholly overwritten (neither)."""
+
+    resource: str
+    clear: Color4 | None = None
+    load: bool = False
+    mip: int | None = None
+    layer: int | None = None
+    read_only: bool = False
+
+
+def color(
+    resource: str,
+    *,
+    clear: Color4 | None = None,
+    load: bool = False,
+    mip: int | None = None,
+    layer: int | None = None,
+) -> Attachment:
+    """A colour attachment. Without ``clear`` and ``load`` the draw must cover every texel."""
+    return Attachment(resource, clear, load, mip, layer)
+
+
+def depth(
+    resource: str,
+    *,
+    clear: float | None = None,
+    load: bool = False,
+    read_only: bool = False,
+    layer: int | None = None,
+) -> Attachment:
+    """A depth attachment. ``clear`` is a distance in 0 (near) .. 1 (far), mirrored under reversed depth."""
+    value = None if clear is None else (clear, 0.0, 0.0, 0.0)
+    return Attachment(resource, value, load or read_only, None, layer, read_only)
+
+
+# ---------------------------------------------------------------- the builder
+
+
+@dataclass
+class Builder:
+    """Collects one pass's sub-passes. ``inputs`` and ``outputs`` map connected port names to resources.
+
+    ``features`` is what the scene holds; ask through :meth:`requires` so that the decision is recorded.
+    """
+
+    pass_name: str
+    node_folder: Path
+    graph_folder: Path
+    frame: Frame
+    features: SceneFeatures
+    full: bool
+    inputs: Mapping[str, Resource]
+    outputs: Mapping[str, Resource]
+    position: Position | None = None
+    resources: dict[str, Resource] = field(default_factory=dict)
+    subpasses: list[SubPass] = field(default_factory=list)
+    decisions: list[Decision] = field(default_factory=list)
+
+    # ---- what is connected
+
+    def input(self, port: str) -> str:
+        """The resource connected to an input port; a ``KeyError`` when an optional one is not connected."""
+        return self.inputs[port].name
+
+    def output(self, port: str) -> str:
+        """The resource connected to an output port."""
+        return self.outputs[port].name
+
+    def texture_desc(self, resource: str) -> TextureDesc:
+        """The description of a texture resource visible to this pass."""
+        desc = self._find(resource).desc
+        assert isinstance(desc, TextureDesc), f"{resource} is a buffer"
+        return desc
+
+    def size(self, resource: str) -> tuple[int, int]:
+        """Width and height of a texture, in texels."""
+        desc = self.texture_desc(resource)
+        return desc.width, desc.height
+
+    def _find(self, resource: str) -> Resource:
+        if resource in self.resources:
+            return self.resources[resource]
+        for connected in (*self.inputs.values(), *self.outputs.values()):
+            if connected.name == resource:
+                return connected
+        raise KeyError(resource)
+
+    # ---- specialisation
+
+    def requires(self, feature: str, step: str = "") -> bool:
+        """Whether the scene has ``feature`` (always, under ``--full``). Records what was left out and why."""
+        present = bool(getattr(self.features, feature))
+        if not present and not self.full:
+            subject = f"{self.pass_name}.{step}" if step else self.pass_name
+            self.decisions.append(Decision("specialise", "scene_lacks_feature", subject, {"feature": feature}))
+        return present or self.full
+
+    # ---- internal targets
+
+    def texture(
+        self,
+        name: str,
+        format: str,
+        *,
+        like: str | None = None,
+        scale: float = 1.0,
+        size: tuple[int, int] | None = None,
+        layers: int = 1,
+        mips: int = 1,
+        samples: int = 1,
+        target: Target | None = None,
+    ) -> str:
+        """Declare a transient texture; sized by ``size``, or ``scale`` times ``like`` (default: the frame), rounded up."""
+        if size is None:
+            base = self.size(like) if like else (self.frame.width, self.frame.height)
+            size = (max(1, -int(-base[0] * scale // 1)), max(1, -int(-base[1] * scale // 1)))
+        if target is None:
+            target = Target.D2_ARRAY if layers > 1 else Target.D2
+        return self._declare(name, TextureDesc(format, size[0], size[1], layers, mips, samples, target))
+
+    def buffer(self, name: str, bytes: int) -> str:
+        """Declare a transient buffer."""
+        return self._declare(name, BufferDesc(bytes))
+
+    def _declare(self, name: str, desc: TextureDesc | BufferDesc) -> str:
+        full_name = f"{self.pass_name}.{name}"
+        assert full_name not in self.resources, f"{full_name} is declared twice"
+        self.resources[full_name] = Resource(full_name, desc, declared=False, position=self.position)
+        return full_name
+
+    # ---- programs
+
+    def program(self, *files: str, defines: Mapping[str, Any] | None = None, user: bool = False) -> Program:
+        """A program of the shader files named, the stage told by the suffix (.vert .frag .geom .tesc .tese .comp).
+
+        Files lie in the node's folder, in the shared shader folder when the name starts with ``<`` (``<fullscreen.vert>``),
+        or in the graph's folder for ``user`` files. Defines: booleans become 0/1, numbers and words are written out.
+        """
+        stages = tuple(sorted((_stage(file), self._shader(file, user)) for file in files))
+        variant = {"DEPTH_REVERSED": int(self.frame.depth == "reversed")}
+        variant |= {k: int(v) if isinstance(v, bool) else v for k, v in (defines or {}).items()}
+        return Program(stages, tuple(sorted((key, str(value)) for key, value in variant.items())))
+
+    def _shader(self, file: str, user: bool) -> Path:
+        if file.startswith("<"):
+            return SHADERS / file.strip("<>")
+        return (self.graph_folder if user else self.node_folder) / file
+
+    # ---- sub-passes
+
+    def raster(
+        self,
+        step: str,
+        program: Program,
+        *,
+        color: Sequence[Attachment] = (),
+        depth: Attachment | None = None,
+        bind: Mapping[str, Binding] | None = None,
+        work: Work | None = None,
+        state: State | None = None,
+        uniforms: Mapping[str, UniformValue] | None = None,
+    ) -> None:
+        """A draw into attachments; a full-screen triangle unless ``work`` says otherwise.
+
+        A program given without a vertex stage draws with the shared full-screen vertex shader.
+        """
+        work = work or Fullscreen()
+        state = state or State()
+        if isinstance(work, Fullscreen) and not any(stage == "vertex" for stage, _ in program.stages):
+            program = replace(program, stages=(*program.stages, ("vertex", SHADERS / "fullscreen.vert")))
+        accesses = [_attach(a, Usage.COLOR) for a in color]
+        clears = {a.resource: a.clear for a in color if a.clear is not None}
+        if depth is not None:
+            writes = not depth.read_only
+            accesses.append(_attach(depth, Usage.DEPTH if writes else Usage.DEPTH_READ))
+            if not writes:
+                state = replace(state, depth_write=False)
+            if depth.clear is not None:
+                far = depth.clear[0]
+                clears[depth.resource] = (1.0 - far if self.frame.depth == "reversed" else far, 0.0, 0.0, 0.0)
+        accesses += _bound(bind)
+        if isinstance(work, DrawIndirect):
+            accesses.append(Access(work.buffer, Usage.INDIRECT))
+        self._add(SubPass(
+            self._step(step), self.pass_name, tuple(accesses), work, program, state,
+            dict(uniforms or {}), clears, self.position,
+        ))  # fmt: skip
+
+    def compute(
+        self,
+        step: str,
+        program: Program,
+        groups: tuple[int, int, int] | DispatchIndirect,
+        *,
+        bind: Mapping[str, Binding] | None = None,
+        uniforms: Mapping[str, UniformValue] | None = None,
+    ) -> None:
+        """A dispatch of ``groups`` work groups, or of as many as a buffer says."""
+        work = groups if isinstance(groups, DispatchIndirect) else Dispatch(*groups)
+        accesses = _bound(bind)
+        if isinstance(work, DispatchIndirect):
+            accesses.append(Access(work.buffer, Usage.INDIRECT))
+        self._add(SubPass(
+            self._step(step), self.pass_name, tuple(accesses), work, program, State(), dict(uniforms or {}), {}, self.position
+        ))  # fmt: skip
+
+    def copy(self, step: str, source: str, destination: str, *, blit: bool = False, linear: bool = False) -> None:
+        """Copy a texture (or buffer) whole; ``blit`` scales, converts or resolves multisamples."""
+        accesses = (Access(source, Usage.COPY_FROM), Access(destination, Usage.COPY_TO, load=False))
+        found = self._find(source).desc
+        work: Work
+        if isinstance(found, BufferDesc):
+            work = CopyBuffer(source, destination, found.bytes)
+        else:
+            work = CopyTexture(source, destination, blit, linear)
+        self._add(SubPass(self._step(step), self.pass_name, accesses, work, position=self.position))
+
+    def clear(self, step: str, resource: str, value: Color4 | int = (0.0, 0.0, 0.0, 0.0)) -> None:
+        """Set a whole texture or buffer to one value."""
+        accesses = (Access(resource, Usage.CLEAR, load=False),)
+        self._add(SubPass(self._step(step), self.pass_name, accesses, ClearResource(resource, value), position=self.position))
+
+    def mips(self, step: str, resource: str) -> None:
+        """Fill the lower mip levels of a texture from its first."""
+        accesses = (Access(resource, Usage.COPY_FROM, mip=0), Access(resource, Usage.COPY_TO, load=True))
+        self._add(SubPass(self._step(step), self.pass_name, accesses, GenerateMips(resource), position=self.position))
+
+    def groups(self, resource: str, tile: tuple[int, int] = (8, 8), depth: int = 1) -> tuple[int, int, int]:
+        """Work groups that cover a texture with tiles of the given size."""
+        width, height = self.size(resource)
+        return -(-width // tile[0]), -(-height // tile[1]), depth
+
+    def _step(self, step: str) -> str:
+        return f"{self.pass_name}.{step}"
+
+    def _add(self, subpass: SubPass) -> None:
+        assert all(subpass.name != other.name for other in self.subpasses), f"{subpass.name} is added twice"
+        self.subpasses.append(subpass)
+
+
+_SUFFIX = {
+    ".vert": "vertex", ".frag": "fragment", ".geom": "geometry",
+    ".tesc": "tess_control", ".tese": "tess_evaluation", ".comp": "compute",
+}  # fmt: skip
+
+
+def _stage(file: str) -> str:
+    suffix = Path(file.strip("<>")).suffix
+    if suffix not in _SUFFIX:
+        raise ValueError(f"{file}: a shader file ends in one of {', '.join(_SUFFIX)}")
+    return _SUFFIX[suffix]
+
+
+def _attach(attachment: Attachment, usage: Usage) -> Access:
+    return Access(attachment.resource, usage, load=attachment.load, mip=attachment.mip, layer=attachment.layer)
+
+
+def _bound(bind: Mapping[str, Binding] | None) -> list[Access]:
+    return [
+        Access(b.resource, b.usage, name, b.load, b.mip, b.layer, b.aspect, b.filter, b.wrap)
+        for name, b in (bind or {}).items()
+    ]

@@ -1,0 +1,72 @@
+"""What a node is: typed ports, parameters, and a ``build`` that adds sub-passes without OpenGL."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar, get_args
+
+from rendergraph.node.params import Params
+
+if TYPE_CHECKING:
+    from rendergraph.node.builder import Builder
+
+
+ParamsT = TypeVar("ParamsT", bound=Params)
+
+
+@dataclass(frozen=True, slots=True)
+class Port:
+    """A typed connection of a node.
+
+    ``formats`` lists what the port takes, the preferred one first (an undeclared output resource gets it); empty for
+    a buffer. ``like`` names another port whose size this one must have. ``modify`` marks an output that adds to what
+    the resource already holds. ``layers``: exact number of layers, ``None`` for any.
+    """
+
+    help: str
+    formats: tuple[str, ...] = ()
+    buffer: bool = False
+    optional: bool = False
+    modify: bool = False
+    like: str | None = None
+    samples: tuple[int, ...] = (1,)
+    layers: int | None = 1
+
+
+class Node(ABC, Generic[ParamsT]):
+    """Base class of every node: ``class Blur(Node[BlurParams])`` in ``nodes/blur/__init__.py``, found by its folder.
+
+    ``exact`` nodes are tested for equality with a closed form; others name the file of their independent reference.
+    ``open_ports`` nodes take any port name, for users' own shaders. ``needs_scene`` nodes draw geometry or read lights.
+    """
+
+    name: ClassVar[str] = ""  # set by discovery to the folder's name
+    folder: ClassVar[Path] = Path()  # set by discovery
+    inputs: ClassVar[Mapping[str, Port]] = {}
+    outputs: ClassVar[Mapping[str, Port]] = {}
+    params_type: ClassVar[type[Params]] = Params  # set from the type argument
+    open_ports: ClassVar[bool] = False
+    needs_scene: ClassVar[bool] = False
+    exact: ClassVar[bool] = False
+
+    def __init__(self, params: ParamsT) -> None:
+        self.params = params
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        for base in getattr(cls, "__orig_bases__", ()):
+            for argument in get_args(base):
+                if isinstance(argument, type) and issubclass(argument, Params):
+                    cls.params_type = argument
+
+    @abstractmethod
+    def build(self, b: Builder) -> None:
+        """Add this node's sub-passes to ``b``. Runs without OpenGL and without numpy; must be deterministic."""
+
+    @classmethod
+    def summary(cls) -> str:
+        """The first line of the class's docstring."""
+        return (cls.__doc__ or "").strip().partition("\n")[0]

@@ -1,0 +1,1 @@
+"""From a document to a verified plan: pure Python, one phase a file, no OpenGL."""
