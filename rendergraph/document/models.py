@@ -1,19 +1,38 @@
 """The graph file, as pydantic models: names, types, ranges, units, defaults and help of everything outside ``set:``.
 
-Shapes only. Positions, semantic checks and node parameters come later (``load.py``, ``rendergraph.plan.expand``).
-Angles are degrees, lengths metres, colours linear Rec. 709.
+Shapes only: what needs other passes, node ports or the disk is checked by ``node_checks.py`` and
+``rendergraph.plan.expand``. Angles are degrees, lengths metres, colours linear Rec. 709.
+
+Validators raise ``mistake(...)``, which names the key to point at, or a row of the message table by its code.
 """
 
 from __future__ import annotations
 
+from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
 
 from rendergraph.document.formats import FORMATS
+from rendergraph.document.suggest import did_you_mean
 
 MAX_SIZE = 16384
 MAX_FRAMES = 10000
+
+IMAGE_SUFFIXES = (".png", ".exr", ".npy")
+
+
+def mistake(problem: str, hint: str, key: str = "") -> PydanticCustomError:
+    """A validator's error with a help line of its own; ``key`` is the key of the model to point at."""
+    return PydanticCustomError("mistake", "{problem}", {"problem": problem, "hint": hint, "key": key})
+
+
+def _known_format(name: str) -> str:
+    if name not in FORMATS:
+        raise PydanticCustomError("RG303", "unknown format", {"format": name, "hint": did_you_mean(name, FORMATS)})
+    return name
+
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=64)]
 #: A resource, or a node's internal one: ``light.histogram``.
@@ -23,6 +42,7 @@ Vec3 = tuple[float, float, float]
 Unit = Annotated[float, Field(ge=0, le=1)]
 NonNegative = Annotated[float, Field(ge=0)]
 Rgb = tuple[NonNegative, NonNegative, NonNegative]
+FormatName = Annotated[str, AfterValidator(_known_format), Field(json_schema_extra={"enum": [*sorted(FORMATS)]})]
 
 
 class Model(BaseModel):
@@ -64,24 +84,29 @@ class CameraModel(Model):
     @model_validator(mode="after")
     def _consistent(self) -> CameraModel:
         if self.far is not None and self.far <= self.near:
-            raise ValueError(f"far ({self.far:g} m) must lie beyond near ({self.near:g} m)")
+            raise mistake(
+                f"far ({self.far:g} m) is not beyond near ({self.near:g} m)", "raise far or lower near", "far"
+            )
         if self.position is not None and self.position == self.target:
-            raise ValueError("position and target are the same point")
+            raise mistake("position and target are the same point", "move one of them", "target")
         return self
+
+
+def _not_zero(direction: Vec3) -> Vec3:
+    if not any(direction):
+        raise mistake("a direction cannot be the zero vector", "give it a length; it need not be 1")
+    return direction
+
+
+Direction = Annotated[Vec3, AfterValidator(_not_zero)]
 
 
 class SunModel(Model):
     """A directional light."""
 
-    direction: Vec3 = Field((-0.4, -1.0, -0.3), description="Direction the light travels; need not be normalised.")
+    direction: Direction = Field((-0.4, -1.0, -0.3), description="Direction the light travels; need not be normalised.")
     illuminance: NonNegative = Field(5.0, description="Irradiance on a facing surface, in scene-linear units.")
     color: Rgb = Field((1.0, 0.96, 0.9), description="Linear colour.")
-
-    @model_validator(mode="after")
-    def _direction(self) -> SunModel:
-        if not any(self.direction):
-            raise ValueError("direction must not be the zero vector")
-        return self
 
 
 class AmbientModel(Model):
@@ -113,17 +138,26 @@ class PointModel(Model):
 class SpotModel(PointModel):
     """One spot light."""
 
-    direction: Vec3 = Field((0.0, -1.0, 0.0), description="Axis of the cone.")
+    direction: Direction = Field((0.0, -1.0, 0.0), description="Axis of the cone.")
     inner: float = Field(20.0, ge=0, lt=90, description="Half angle of full brightness, in degrees.")
     outer: float = Field(30.0, gt=0, lt=90, description="Half angle beyond which it is exactly dark, in degrees.")
 
     @model_validator(mode="after")
     def _cone(self) -> SpotModel:
         if self.inner > self.outer:
-            raise ValueError(f"inner ({self.inner:g}) must not exceed outer ({self.outer:g})")
-        if not any(self.direction):
-            raise ValueError("direction must not be the zero vector")
+            problem = f"inner ({self.inner:g} degrees) exceeds outer ({self.outer:g})"
+            raise mistake(problem, "inner is the half angle of full brightness, outer the one of darkness", "inner")
         return self
+
+
+def _light_kind(light: Any) -> str:
+    keys = light if isinstance(light, dict) else ()
+    return "spot" if isinstance(light, SpotModel) or {"direction", "inner", "outer"} & {*keys} else "point"
+
+
+LightModel = Annotated[
+    Annotated[PointModel, Tag("point")] | Annotated[SpotModel, Tag("spot")], Discriminator(_light_kind)
+]
 
 
 class LightsModel(Model):
@@ -132,14 +166,18 @@ class LightsModel(Model):
     sun: SunModel | None = Field(None, description="A directional light.")
     ambient: AmbientModel | None = Field(None, description="A constant hemisphere.")
     points: PointsModel | None = Field(None, description="Scattered point lights.")
-    list: tuple[PointModel | SpotModel, ...] = Field((), description="Point and spot lights one by one.")
+    list: tuple[LightModel, ...] = Field(
+        (), description="Point and spot lights one by one; one with a direction, inner or outer angle is a spot."
+    )
     from_scene: bool = Field(True, description="Use the lights of the scene file or procedural scene too.")
 
 
 class SceneModel(Model):
     """What is drawn: a shipped procedural scene or a glTF file, a camera and lights."""
 
-    source: str = Field(..., min_length=1, description="`atrium`, `cornell`, `spheres`, or a .gltf/.glb relative to this file.")
+    source: str = Field(
+        ..., min_length=1, description="`atrium`, `cornell`, `spheres`, or a .gltf/.glb relative to this file."
+    )
     detail: Unit = Field(1.0, description="Geometric detail of a procedural scene, 0 to 1.")
     seed: int = Field(0, ge=0, le=2**32 - 1, description="Seed of a procedural scene.")
     camera: CameraModel = Field(default_factory=lambda: CameraModel(), description="The camera.")
@@ -149,7 +187,7 @@ class SceneModel(Model):
 class ResourceModel(Model):
     """A resource: a texture (format and size), a buffer (bytes), last frame's content (previous), or a file's."""
 
-    format: str | None = Field(None, description="Texture format.", json_schema_extra={"enum": sorted(FORMATS)})
+    format: FormatName | None = Field(None, description="Texture format.")
     scale: float | None = Field(None, gt=0, le=16, description="Size as a multiple of the frame's, or of `like`'s.")
     like: Name | None = Field(None, description="Another texture whose size (and format, unless given) this one has.")
     fixed: tuple[Extent, Extent] | None = Field(None, description="Size in texels, whatever the frame's.")
@@ -159,6 +197,27 @@ class ResourceModel(Model):
     bytes: int | None = Field(None, ge=4, le=2**31 - 1, multiple_of=4, description="Size of a buffer in bytes.")
     previous: Name | None = Field(None, description="The resource whose last frame's content this is.")
     file: str | None = Field(None, min_length=1, description="An image file (.png, .jpg, .hdr) relative to this file.")
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> ResourceModel:
+        given = {key for key in self.model_fields_set if getattr(self, key) is not None}
+        kind = next((key for key in ("previous", "file", "bytes") if key in given), None)
+        if kind is not None:
+            _exclusive(
+                kind, sorted(given - {"previous": set(), "file": {"format", "mips"}, "bytes": set()}[kind] - {kind})
+            )
+        elif "fixed" in given:
+            _exclusive("fixed", sorted(given & {"like", "scale"}))
+        if kind is None and not given & {"format", "like"}:
+            raise PydanticCustomError("RG302", "no format", {"key": ""})
+        if self.samples > 1 and self.mips != 1:
+            raise PydanticCustomError("RG309", "multisampled with mips", {"key": "mips"})
+        return self
+
+
+def _exclusive(first: str, others: list[str]) -> None:
+    if others:
+        raise PydanticCustomError("RG301", "exclusive", {"first": first, "second": others[0], "key": others[0]})
 
 
 class PassModel(Model):
@@ -187,11 +246,22 @@ class BarrierModel(Model):
     kind: BarrierKind = Field(..., description="How it is used next: a bit of glMemoryBarrier, or texture_barrier.")
 
 
+def _output_file(name: str) -> str:
+    path = PurePosixPath(name)
+    if path.is_absolute() or ".." in path.parts or "\\" in name or "\0" in name:
+        raise mistake(f"'{name}' does not stay inside the output folder", "give a relative path without `..`")
+    if path.suffix.lower() not in IMAGE_SUFFIXES:
+        raise mistake(f"'{name}' has no known image suffix", f"end the name in {', '.join(IMAGE_SUFFIXES)}")
+    return name
+
+
 class OutputModel(Model):
     """A file written from a resource after the last frame (or every frame, when the name holds `{frame}`)."""
 
-    file: str = Field(..., min_length=1, description="File name inside the output folder; .png, .exr or .npy.")
-    format: str | None = Field(None, description="Format, when the resource is not declared.", json_schema_extra={"enum": sorted(FORMATS)})
+    file: Annotated[str, AfterValidator(_output_file)] = Field(
+        ..., min_length=1, max_length=200, description="File name inside the output folder; .png, .exr or .npy."
+    )
+    format: FormatName | None = Field(None, description="Format, when the resource is not declared.")
 
 
 class BudgetModel(Model):
@@ -204,7 +274,7 @@ class BudgetModel(Model):
 
 
 class DocumentModel(Model):
-    """A graph file."""
+    """A graph file: which passes run, on which resources, and what is written out."""
 
     rendergraph: Literal[1] = Field(..., description="Version of the language.")
     title: str = Field("", max_length=200, description="What the graph shows.")
@@ -212,6 +282,18 @@ class DocumentModel(Model):
     scene: SceneModel | None = Field(None, description="What is drawn.")
     resources: dict[Name, ResourceModel] = Field(default_factory=dict, description="Named textures and buffers.")
     passes: dict[Name, PassModel] = Field(..., min_length=1, description="The passes, in any order.")
-    barriers: tuple[BarrierModel, ...] | None = Field(None, description="Barriers by the author, checked against the derived ones.")
+    barriers: tuple[BarrierModel, ...] | None = Field(
+        None, description="Barriers by the author, checked against the derived ones; without this key all are derived."
+    )
     outputs: dict[ResourceName, OutputModel] = Field(..., min_length=1, description="Resources written to files.")
     budget: BudgetModel = Field(default_factory=lambda: BudgetModel(), description="Limits that fail the run.")
+
+    @model_validator(mode="after")
+    def _distinct_files(self) -> DocumentModel:
+        writers: dict[str, str] = {}
+        for name, output in self.outputs.items():
+            first = writers.setdefault(output.file, name)
+            if first != name:
+                problem = f"outputs '{first}' and '{name}' both write {output.file}"
+                raise mistake(problem, "give each output a file of its own", f"outputs/{name}/file")
+        return self

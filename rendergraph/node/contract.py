@@ -22,7 +22,7 @@ class Port:
     """A typed connection of a node.
 
     ``formats`` lists what the port takes, the preferred one first (an undeclared output resource gets it); empty for
-    a buffer. ``like`` names another port whose size this one must have. ``modify`` marks an output that adds to what
+    a buffer. With both ``formats`` and ``buffer`` the port takes either. ``like`` names another port whose size this one must have. ``modify`` marks an output that adds to what
     the resource already holds. ``layers``: exact number of layers, ``None`` for any.
     """
 
@@ -61,6 +61,10 @@ class Node(ABC, Generic[ParamsT]):
             for argument in get_args(base):
                 if isinstance(argument, type) and issubclass(argument, Params):
                     cls.params_type = argument
+
+    def modifies(self, port: str) -> bool:
+        """Whether an output keeps content from before: by its declaration, or by parameters where ports are open."""
+        return port in self.outputs and self.outputs[port].modify
 
     @abstractmethod
     def build(self, b: Builder) -> None:

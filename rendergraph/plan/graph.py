@@ -120,19 +120,12 @@ class Usage(Enum):
     CLEAR = "clear"
     HOST_READ = "host_read"
 
-    @property
-    def writes(self) -> bool:
-        """Whether the access can change the resource."""
-        return self in _WRITES
-
-    @property
-    def incoherent(self) -> bool:
-        """Whether it is a shader store or atomic, which GL orders only by ``glMemoryBarrier`` (GL 4.5, 7.13.2)."""
-        return self in _INCOHERENT
-
-
-_INCOHERENT = frozenset({Usage.IMAGE_WRITE, Usage.IMAGE_UPDATE, Usage.STORAGE_WRITE, Usage.STORAGE_UPDATE})
-_WRITES = _INCOHERENT | {Usage.COLOR, Usage.DEPTH, Usage.COPY_TO, Usage.CLEAR}
+    def __init__(self, word: str) -> None:
+        # Plain attributes: the planner asks for them once an access, and hashing an enum member is slow.
+        #: Whether it is a shader store or atomic, which GL orders only by ``glMemoryBarrier`` (GL 4.5, 7.13.2).
+        self.incoherent = word in {"image_write", "image_update", "storage_write", "storage_update"}
+        #: Whether the access can change the resource.
+        self.writes = self.incoherent or word in {"color", "depth", "copy_to", "clear"}
 
 
 @dataclass(frozen=True, slots=True)

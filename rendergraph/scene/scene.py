@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -65,13 +66,43 @@ class Material:
     emissive_texture: TextureUse | None = None  # sRGB
 
 
-@dataclass(frozen=True, slots=True)
-class Image:
-    """8-bit RGBA pixels, first row on top, ``uint8[height, width, 4]``. ``srgb``: colour, decoded when sampled."""
+class PixelSource(Protocol):
+    """An image not decoded yet: its size is known, its pixels come on demand."""
 
-    pixels: npt.NDArray[np.uint8]
-    srgb: bool
-    name: str = ""
+    @property
+    def width(self) -> int: ...
+
+    @property
+    def height(self) -> int: ...
+
+    def decode(self) -> npt.NDArray[np.uint8]:
+        """``uint8[height, width, 4]``; ``RenderGraphError`` RG613 when the file is corrupt."""
+        ...
+
+
+class Image:
+    """8-bit RGBA pixels, first row on top, ``uint8[height, width, 4]``. ``srgb``: colour, decoded when sampled.
+
+    Made from pixels, or from a source that decodes them when they are first asked for.
+    """
+
+    __slots__ = ("_pixels", "height", "name", "srgb", "width")
+
+    def __init__(self, pixels: npt.NDArray[np.uint8] | PixelSource, srgb: bool, name: str = "") -> None:
+        self._pixels = pixels
+        self.srgb = srgb
+        self.name = name
+        if isinstance(pixels, np.ndarray):
+            self.height, self.width = int(pixels.shape[0]), int(pixels.shape[1])
+        else:
+            self.height, self.width = pixels.height, pixels.width
+
+    @property
+    def pixels(self) -> npt.NDArray[np.uint8]:
+        """The pixels, decoded at most once. ``RenderGraphError`` RG613 when the file is corrupt."""
+        if not isinstance(self._pixels, np.ndarray):
+            self._pixels = self._pixels.decode()
+        return self._pixels
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +138,7 @@ class Camera:
     near: float = 0.05
     far: float | None = None
     name: str = ""
+    node: str = ""  # name of the scene file's node that holds it
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,8 +170,23 @@ class Light:
 
 
 @dataclass(frozen=True, slots=True)
+class Node:
+    """A node of the scene file's hierarchy, which skins and animations refer to by index. ``local``: ``float64[4, 4]``
+    node to parent at rest; ``parent`` -1 for a root. ``translation``, ``rotation`` (quaternion xyzw) and ``scale``
+    are what animation replaces; a node given as a matrix cannot be animated and has them at identity.
+    """
+
+    name: str
+    parent: int
+    local: F64
+    translation: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rotation: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
 class Skin:
-    """Joint nodes and inverse bind matrices, kept for later."""
+    """Joint nodes (indices into ``Scene.nodes``) and inverse bind matrices, kept for later."""
 
     joints: tuple[int, ...]
     inverse_bind: F32  # float32[joints, 4, 4]
@@ -191,6 +238,7 @@ class Scene:
     ambient: Ambient | None = None
     joints: npt.NDArray[np.uint16] | None = None
     weights: F32 | None = None
+    nodes: list[Node] = field(default_factory=list)
     skins: list[Skin] = field(default_factory=list)
     animations: list[Animation] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -215,12 +263,10 @@ class Scene:
 
     def features(self) -> SceneFeatures:
         """The feature set, from the materials that instances really use."""
+        from rendergraph.scene.texture_arrays import place_textures  # it imports this module
+
         used = [self.materials[self.meshes[i.mesh].material] for i in self.instances]
-        textures = [
-            t for m in used
-            for t in (m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture)
-            if t is not None
-        ]  # fmt: skip
+        arrays = len(place_textures(self).arrays)
         return SceneFeatures(
             opaque=any(m.alpha is Alpha.OPAQUE for m in used),
             masked=any(m.alpha is Alpha.MASKED for m in used),
@@ -229,7 +275,7 @@ class Scene:
             emissive=any(any(m.emissive) for m in used),
             normal_mapped=any(m.normal_texture is not None for m in used),
             occlusion_mapped=any(m.occlusion_texture is not None for m in used),
-            textured=bool(textures),
+            textured=arrays > 0,
             skinned=any(i.skin is not None for i in self.instances),
             sun=self.sun is not None and any(self.sun.irradiance),
             ambient=self.ambient is not None and any((*self.ambient.sky, *self.ambient.ground)),
@@ -238,5 +284,5 @@ class Scene:
             triangles=self.triangles,
             draws=len(self.instances),
             materials=len(self.materials),
-            texture_arrays=0,
+            texture_arrays=arrays,
         )

@@ -37,7 +37,9 @@ struct Material {
     TextureRef textures[5]; // base color (sRGB), metallic-roughness (g rough, b metal), normal, occlusion (r), emissive (sRGB)
 };
 
-const uint MASKED = 1u;
+const uint MIRRORED = 1u; // Instance.flags
+
+const uint MASKED = 1u;   // Material.flags
 const uint BLENDED = 2u;
 const uint DOUBLE_SIDED = 4u;
 const uint UNLIT = 8u;

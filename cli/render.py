@@ -1,0 +1,84 @@
+"""`rg render`: run a graph and write its images and records."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rendergraph.cli.options import (
+    Format,
+    FormatOption,
+    FramesOption,
+    FullOption,
+    GraphArgument,
+    NoAliasOption,
+    NoCullOption,
+    OrderOption,
+    SceneOption,
+    SeedOption,
+    SetOption,
+    SizeOption,
+    parse_order,
+    parse_size,
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("render")(render)
+
+
+def render(
+    graph: GraphArgument,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Folder for images and records.")] = Path("out"),
+    overrides: SetOption = None,
+    scene: SceneOption = None,
+    size: SizeOption = None,
+    frames: FramesOption = None,
+    samples: Annotated[int, typer.Option("--samples", min=0, max=1000, help="Extra frames timed after the last one.")] = 5,
+    capture: Annotated[
+        list[str] | None, typer.Option("--capture", metavar="RESOURCE", help="Save this target too (repeatable).")
+    ] = None,
+    poison: Annotated[bool, typer.Option("--poison", help="Fill every target with NaN before its first use.")] = False,
+    no_alias: NoAliasOption = False,
+    no_cull: NoCullOption = False,
+    full: FullOption = False,
+    check_finite: Annotated[bool, typer.Option("--check-finite", help="Stop at the first NaN or Inf a pass writes.")] = False,
+    order: OrderOption = "default",
+    order_seed: SeedOption = 0,
+    device: Annotated[int | None, typer.Option("--device", min=0, help="EGL device index; `rg doctor` lists them.")] = None,
+    format: FormatOption = Format.TEXT,
+) -> None:
+    """Run a graph; write its images, timing.json and resources.json, and print both as tables."""
+    from rendergraph.cli.console import progress_bar, report, write_json, write_table
+    from rendergraph.document.load import load_document
+    from rendergraph.plan.plan import PlanOptions
+    from rendergraph.report.tables import lifetime_table, timing_table
+    from rendergraph.report.write import write_result
+    from rendergraph.run.render import RenderOptions, render_document
+
+    document = load_document(graph, overrides or ())
+    options = RenderOptions(
+        size=parse_size(size),
+        frames=frames,
+        samples=samples,
+        scene=scene,
+        captures=tuple(capture or ()),
+        poison=poison,
+        full=full,
+        check_finite=check_finite,
+        device=device,
+        plan=PlanOptions(alias=not no_alias, cull=not no_cull, order=parse_order(order), seed=order_seed),
+    )
+    with progress_bar() as progress:
+        result = render_document(document, options, progress)
+        written = write_result(result, document, output)
+    report(result.warnings)
+    if format is Format.JSON:
+        write_json({"timing": written.timing, "resources": written.resources, "files": [str(f) for f in written.files]})
+        return
+    write_table(timing_table(written.timing), lifetime_table(written.resources))
+    for file in written.files:
+        typer.echo(f"wrote {file}")

@@ -1,0 +1,53 @@
+"""Sets a texture or buffer to one value."""
+
+from __future__ import annotations
+
+from rendergraph.document.formats import FORMATS
+from rendergraph.node.builder import Builder
+from rendergraph.node.contract import Node, Port
+from rendergraph.node.params import Params, knob
+from rendergraph.node.user_shader import Color, misuse
+from rendergraph.plan.graph import BufferDesc
+
+
+class ClearParams(Params):
+    """The value."""
+
+    value: int | float | Color = knob(
+        0,
+        "Four numbers, or one for all channels. For depth: a distance, 0 near to 1 far. For a buffer: a 32-bit word.",
+    )
+    stencil: int = knob(0, "Value of the stencil, where the format has one.", ge=0, le=255)
+
+
+class Clear(Node[ClearParams]):
+    """Sets a whole texture, all levels and layers, or a whole buffer to one value."""
+
+    outputs = {
+        "target": Port(
+            "What is set.",
+            formats=("rgba8", *sorted(FORMATS.keys() - {"rgba8"})),
+            buffer=True,
+            samples=(1, 2, 4, 8),
+            layers=None,
+        ),
+    }
+    exact = True
+
+    def build(self, b: Builder) -> None:
+        """One clear."""
+        target, desc, value = b.output("target"), b.outputs["target"].desc, self.params.value
+        if isinstance(desc, BufferDesc):
+            if not isinstance(value, int) or not 0 <= value < 1 << 32:
+                raise misuse(
+                    b, f"{value} is no 32-bit word", "a buffer is filled with one whole number, 0 to 4294967295"
+                )
+            b.clear("clear", target, value)
+            return
+        texel = value if isinstance(value, tuple) else (float(value),) * 4
+        if FORMATS[desc.format].depth:
+            if isinstance(value, tuple) or not 0 <= value <= 1:
+                raise misuse(b, f"{value} is no distance", "depth is cleared to one number, 0 (near) to 1 (far)")
+            distance = 1.0 - value if b.frame.depth == "reversed" else float(value)
+            texel = (distance, float(self.params.stencil), 0.0, 0.0)
+        b.clear("clear", target, texel)

@@ -1,0 +1,95 @@
+"""Copies a texture or buffer: as it is, scaled and converted, or resolved from several samples."""
+
+from __future__ import annotations
+
+from rendergraph.document.formats import FORMATS
+from rendergraph.node.builder import Builder
+from rendergraph.node.contract import Node, Port
+from rendergraph.node.params import Params, knob
+from rendergraph.node.user_shader import misuse
+from rendergraph.plan.graph import BufferDesc, TextureDesc
+
+ANY_SAMPLES = (1, 2, 4, 8)
+
+
+class CopyParams(Params):
+    """How much the copy may change."""
+
+    blit: bool = knob(False, "Scale to the destination's size, convert the format, or resolve samples.")
+    linear: bool = knob(False, "Interpolate when a blit scales, instead of taking the nearest texel.")
+    mips: bool = knob(False, "Then fill the destination's lower mip levels by averaging.")
+
+
+class Copy(Node[CopyParams]):
+    """Copies one resource into another.
+
+    Without ``blit`` sizes are equal and formats belong to one view class (GL 4.5, table 8.22), and bits are kept.
+    """
+
+    inputs = {
+        "source": Port("What is copied.", formats=tuple(FORMATS), buffer=True, samples=ANY_SAMPLES, layers=None),
+    }
+    outputs = {
+        "destination": Port(
+            "Where it goes.", formats=("rgba8", *sorted(FORMATS.keys() - {"rgba8"})), buffer=True, samples=ANY_SAMPLES, layers=None
+        ),
+    }  # fmt: skip
+    exact = True
+
+    def build(self, b: Builder) -> None:
+        """A copy, and mip levels when asked for."""
+        source, destination = b.input("source"), b.output("destination")
+        one, two = b.inputs["source"].desc, b.outputs["destination"].desc
+        if isinstance(one, TextureDesc) and isinstance(two, TextureDesc):
+            problem = self._blit_problem(one, two) if self.params.blit else self._copy_problem(one, two)
+            hint = "" if self.params.blit else "set blit: true to scale, convert or resolve"
+        elif isinstance(one, BufferDesc) and isinstance(two, BufferDesc):
+            problem, hint = f"{one.bytes} bytes do not fit into {two.bytes}", "make the destination as large"
+            problem = "" if one.bytes == two.bytes else problem
+        else:
+            problem, hint = "a texture and a buffer cannot be copied into each other", "use the compute node"
+        if problem:
+            raise misuse(b, problem, hint or "choose matching resources")
+        b.copy("copy", source, destination, blit=self.params.blit, linear=self.params.linear)
+        if self.params.mips and isinstance(two, TextureDesc):
+            b.mips("mips", destination)
+
+    def _copy_problem(self, one: TextureDesc, two: TextureDesc) -> str:
+        if (one.width, one.height) != (two.width, two.height):
+            return f"the source is {one.width} x {one.height}, the destination {two.width} x {two.height}"
+        if FORMATS[one.format].view_class != FORMATS[two.format].view_class:
+            return f"{one.format} and {two.format} are laid out differently"
+        if one.layers != two.layers:
+            return f"the source has {one.layers} layers, the destination {two.layers}"
+        if one.samples != two.samples:
+            return f"the source has {one.samples} samples a texel, the destination {two.samples}"
+        return self._mip_problem(one, two)
+
+    def _blit_problem(self, one: TextureDesc, two: TextureDesc) -> str:
+        """The rules of glBlitNamedFramebuffer (GL 4.5, 18.3.1)."""
+        first, second = FORMATS[one.format], FORMATS[two.format]
+        same_size = (one.width, one.height) == (two.width, two.height)
+        if first.depth != second.depth:
+            return "depth and colour are never converted into each other"
+        if first.depth and one.format != two.format:
+            return f"depth of different formats ({one.format}, {two.format}) is never converted"
+        if first.sampler != second.sampler:
+            return f"{one.format} and {two.format} are never converted into each other"
+        if self.params.linear and (first.depth or first.sampler):
+            return f"{one.format} is never interpolated"
+        if one.samples > 1 and not same_size:
+            return "samples are resolved at one size only"
+        if two.samples > 1 and one.samples != two.samples:
+            return f"{one.samples} samples cannot be spread over {two.samples}"
+        if one.layers > 1 or two.layers > 1:
+            return "layers are copied, not blitted"
+        return self._mip_problem(one, two, same=False)
+
+    def _mip_problem(self, one: TextureDesc, two: TextureDesc, same: bool = True) -> str:
+        if self.params.mips and (two.mips == 1 or FORMATS[two.format].sampler or FORMATS[two.format].depth):
+            return "mips: the destination must have several levels and a colour format that can be averaged"
+        if two.mips > 1 and not self.params.mips and (one.mips != two.mips or not same):
+            return "the destination's lower mip levels would stay undefined; set mips: true"
+        if one.mips > two.mips and same:
+            return f"the source has {one.mips} mip levels, the destination {two.mips}"
+        return ""

@@ -1,0 +1,60 @@
+"""Lights a G-buffer: sun with shadows, ambient light, and every local light at every pixel."""
+
+from __future__ import annotations
+
+from rendergraph.document.formats import DEPTH
+from rendergraph.node.builder import Builder, color, sample
+from rendergraph.node.contract import Node, Port
+from rendergraph.node.params import Params, knob
+from rendergraph.nodes.deferred_lighting.light_model import SHADOW_PORTS, light_model
+from rendergraph.nodes.gbuffer import BASE_COLOR_FORMATS, EMISSIVE_FORMATS, MATERIAL_FORMATS
+from rendergraph.nodes.gbuffer.packing import NORMAL_FORMATS, normal_defines
+
+RADIANCE_FORMATS = ("rgba16f", "rgba32f", "r11g11b10f")
+
+
+class DeferredLightingParams(Params):
+    """What the light costs beside the lights themselves."""
+
+    shadow_taps: int = knob(
+        3, "Width of the shadow filter: a box of this many bilinear taps a side.", unit="texel", ge=1, le=9, accurate="up"
+    )
+
+
+class DeferredLighting(Node[DeferredLightingParams]):
+    """Lights every pixel of a G-buffer by every light: the exact reference for light culling."""
+
+    inputs = {
+        "depth": Port("Depth of the surfaces.", formats=("d32f", *sorted(DEPTH - {"d32f"}))),
+        "normal": Port("World-space normals.", formats=NORMAL_FORMATS, like="depth"),
+        "base_color": Port("Linear base colour.", formats=BASE_COLOR_FORMATS, like="depth"),
+        "material": Port("Roughness, metallic, occlusion, unlit.", formats=MATERIAL_FORMATS, like="depth"),
+        "emissive": Port("Emitted radiance.", formats=EMISSIVE_FORMATS, like="depth", optional=True),
+        "occlusion": Port(
+            "Share of the ambient light that arrives, at any resolution.",
+            formats=("r8", "r16", "r16f", "r32f", "rg8", "rg16f", "rgba8", "rgba16f"), optional=True,
+        ),
+        **SHADOW_PORTS,
+    }  # fmt: skip
+    outputs = {"color": Port("Scene-linear radiance; zero where there is no surface.", formats=RADIANCE_FORMATS)}
+    needs_scene = True
+
+    def build(self, b: Builder) -> None:
+        """One full-screen triangle."""
+        defines, bind = light_model(b, "light", self.params.shadow_taps)
+        emissive = "emissive" in b.inputs and b.requires("emissive", "light")
+        occlusion = "occlusion" in b.inputs and bool(defines["AMBIENT"])
+        defines |= normal_defines(b.texture_desc(b.input("normal")).format)
+        defines |= {"EMISSIVE": int(emissive), "OCCLUSION": int(occlusion)}
+        for port in ("depth", "normal", "base_color", "material"):
+            bind[f"u_{port}"] = sample(b.input(port), aspect="depth" if port == "depth" else "color")
+        if emissive:
+            bind["u_emissive"] = sample(b.input("emissive"))
+        if occlusion:
+            bind["u_occlusion"] = sample(b.input("occlusion"), "linear")
+        b.raster(
+            "light",
+            b.program("deferred_lighting.frag", defines=defines),
+            color=[color(b.output("color"))],
+            bind=bind,
+        )

@@ -1,0 +1,44 @@
+"""What shaders/shading.glsl is compiled with and bound to, for every node that shades with it."""
+
+from __future__ import annotations
+
+from rendergraph.document.messages import RenderGraphError, diagnose
+from rendergraph.node.builder import Binding, Builder, read_buffer, sample
+from rendergraph.node.contract import Port
+
+#: Input ports of a node that takes the sun's shadow.
+SHADOW_PORTS = {
+    "shadow_map": Port("The sun's depth map; without it the sun casts no shadow.",
+                       formats=("d32f", "d24", "d16"), optional=True, layers=None),
+    "cascades": Port("The cascades of the shadow map.", buffer=True, optional=True),
+}  # fmt: skip
+
+
+def light_model(b: Builder, step: str, shadow_taps: int) -> tuple[dict[str, int], dict[str, Binding]]:
+    """The defines and bindings of ``shading.glsl``: what the scene lacks is left out.
+
+    Raises ``RenderGraphError`` RG225 when only one of the two shadow ports is connected.
+    """
+    connected = [port for port in SHADOW_PORTS if port in b.inputs]
+    if len(connected) == 1:
+        missing = next(port for port in SHADOW_PORTS if port not in b.inputs)
+        problem = f"{connected[0]} is connected without {missing}"
+        hint = "connect both outputs of the shadow_map pass, or neither"
+        raise RenderGraphError([diagnose("RG225", b.position, name=b.pass_name, problem=problem, hint=hint)])
+    sun = b.requires("sun", step)
+    shadow = sun and bool(connected)
+    defines = {
+        "SUN": int(sun),
+        "SUN_SHADOW": int(shadow),
+        "AMBIENT": int(b.requires("ambient", step)),
+        "LOCAL_LIGHTS": int(b.requires("local_lights", step)),
+    }
+    if not shadow:
+        return defines, {}
+    layers = b.texture_desc(b.input("shadow_map")).layers
+    defines |= {"SHADOW_TAPS": shadow_taps, "SHADOW_LAYERS": layers}
+    bind = {
+        "u_shadow_map": sample(b.input("shadow_map"), "compare"),
+        "Cascades": read_buffer(b.input("cascades")),
+    }
+    return defines, bind

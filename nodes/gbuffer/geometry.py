@@ -1,0 +1,48 @@
+"""Programs and draws of the scene's geometry, shared by every node that rasterises it."""
+
+from __future__ import annotations
+
+from rendergraph.node.builder import Builder, depth
+from rendergraph.plan.graph import DrawScene, Program, State
+
+
+def scene_program(
+    b: Builder,
+    fragment: str,
+    *,
+    alpha_test: bool,
+    depth_only: bool = False,
+    layered: bool = False,
+    normal_map: bool = False,
+    defines: dict[str, int] | None = None,
+) -> Program:
+    """``<scene.vert>`` with a fragment shader of the node, and the defines both are compiled with."""
+    variant = {
+        "ALPHA_TEST": alpha_test,
+        "DEPTH_ONLY": depth_only,
+        "LAYERED": layered,
+        "NORMAL_MAP": normal_map,
+        "TEXTURE_ARRAYS": b.features.texture_arrays,
+    }
+    return b.program("<scene.vert>", fragment, defines={**variant, **(defines or {})})
+
+
+def solid_queues(b: Builder) -> list[str]:
+    """The queues of opaque and alpha-tested geometry that the scene has; what it lacks is recorded."""
+    return [queue for queue in ("opaque", "masked") if b.requires(queue, queue)]
+
+
+def depth_prepass(b: Builder, target: str, queues: list[str]) -> None:
+    """Fill the depth texture ``target`` with the scene's solid geometry before anything is shaded.
+
+    The pass that follows tests with ``equal``: both take positions from the one ``scene.vert``, where they are invariant.
+    """
+    for queue in queues:
+        first = queue == queues[0]
+        b.raster(
+            f"prepass_{queue}",
+            scene_program(b, "<depth_only.frag>", alpha_test=queue == "masked", depth_only=True),
+            depth=depth(target, clear=1.0) if first else depth(target, load=True),
+            work=DrawScene((queue,)),
+            state=State(depth_test="closer"),
+        )

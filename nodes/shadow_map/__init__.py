@@ -1,0 +1,98 @@
+"""Shadow map of the sun: cascades that follow the camera without shimmering."""
+
+from __future__ import annotations
+
+from rendergraph.document.messages import RenderGraphError, diagnose
+from rendergraph.node.builder import Builder, depth, read_buffer, write_buffer
+from rendergraph.node.contract import Node, Port
+from rendergraph.node.params import Params, knob
+from rendergraph.nodes.gbuffer.geometry import scene_program, solid_queues
+from rendergraph.plan.graph import BufferDesc, DrawScene, State
+
+CASCADES_BYTES = 320  # shaders/cascades.glsl
+MAX_CASCADES = 4
+
+
+class ShadowMapParams(Params):
+    """Where shadows end, how the range is split, and what keeps lit surfaces from shadowing themselves."""
+
+    cascades: int = knob(
+        MAX_CASCADES, "Cascades drawn; at most the layers of the map.", ge=1, le=MAX_CASCADES, accurate="up"
+    )
+    distance: float = knob(60.0, "View depth at which shadows end; ends with the scene if that is nearer.", unit="m", gt=0)
+    split: float = knob(0.7, "Split of the range: 0 into equal lengths, 1 into equal ratios of depth.", ge=0.0, le=1.0)
+    slope_bias: float = knob(
+        1.5, "Depth added to casters, per texel of depth slope: hides acne, detaches shadows.", unit="texel", ge=0, le=16
+    )
+    normal_bias: float = knob(
+        1.0, "How far receivers move out along their normals; 1 clears the filter exactly.", unit="filter radius", ge=0, le=8
+    )
+
+
+class ShadowMap(Node[ShadowMapParams]):
+    """Draws cascaded shadow maps of the sun, stabilised, into the layers of one depth array."""
+
+    inputs = {}
+    outputs = {
+        "map": Port(
+            "Square depth texture seen from the sun, one layer a cascade.",
+            formats=("d32f", "d24", "d16"), layers=None,
+        ),
+        "cascades": Port("Matrices, ranges and texel sizes: 320 bytes (cascades.glsl).", buffer=True),
+    }  # fmt: skip
+    needs_scene = True
+
+    def build(self, b: Builder) -> None:
+        """Fit the cascades on the device, then draw all of them at once, one instance of each draw a layer."""
+        p = self.params
+        target, cascades = b.output("map"), b.output("cascades")
+        desc = b.texture_desc(target)
+        self._check(b, desc.width, desc.height, desc.layers)
+        queues = solid_queues(b) if b.requires("sun", "draw") else []
+        if not queues:
+            far = 0.0 if b.frame.depth == "reversed" else 1.0
+            b.clear("lit", target, (far, 0.0, 0.0, 0.0))
+            b.clear("no_cascades", cascades, 0)
+            return
+        count = min(p.cascades, desc.layers)
+        b.compute(
+            "fit",
+            b.program("cascades.comp"),
+            (1, 1, 1),
+            bind={"Cascades": write_buffer(cascades)},
+            uniforms={
+                "u_count": count,
+                "u_distance": p.distance,
+                "u_split": p.split,
+                "u_resolution": float(desc.width),
+                "u_normal_bias": p.normal_bias,
+            },
+        )
+        for queue in queues:
+            b.raster(
+                queue,
+                scene_program(
+                    b, "<depth_only.frag>", alpha_test=queue == "masked", depth_only=True, layered=True
+                ),
+                depth=depth(target, clear=1.0) if queue == queues[0] else depth(target, load=True),
+                bind={"Cascades": read_buffer(cascades)},
+                # Both faces cast: light must not enter a room through the back of its walls. Casters in front of a
+                # cascade's volume are flattened onto it.
+                work=DrawScene((queue,), instances=count, cull="none"),
+                state=State(depth_test="closer", depth_clamp=True, depth_bias=(p.slope_bias, 0.0)),
+            )
+
+    def _check(self, b: Builder, width: int, height: int, layers: int) -> None:
+        buffer = b.outputs["cascades"].desc
+        assert isinstance(buffer, BufferDesc)
+        problems = []
+        if width != height:
+            problems.append((f"map is {width} x {height} texels, not square", "give it `fixed: [2048, 2048]`"))
+        if layers > MAX_CASCADES:
+            problems.append((f"map has {layers} layers", f"there are at most {MAX_CASCADES} cascades"))
+        if buffer.bytes < CASCADES_BYTES:
+            problems.append((f"cascades has {buffer.bytes} bytes", f"give it `bytes: {CASCADES_BYTES}`"))
+        if problems:
+            raise RenderGraphError([
+                diagnose("RG225", b.position, name=b.pass_name, problem=problem, hint=hint) for problem, hint in problems
+            ])  # fmt: skip

@@ -1,0 +1,57 @@
+"""Files written whole or not at all: into a temporary neighbour first, renamed when complete."""
+
+from __future__ import annotations
+
+import errno
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rendergraph.document.messages import RenderGraphError, diagnose
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yield a temporary path beside ``path``; move it into place on success, delete it on any exception.
+
+    Raises RenderGraphError RG560 when the folder cannot be written or the disk is full.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+        os.close(handle)
+    except OSError as error:
+        raise cannot_write(path, error) from None
+    temporary = Path(name)
+    try:
+        yield temporary
+        temporary.chmod(0o666 & ~_umask())
+        temporary.replace(path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise cannot_write(path, error) from None
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def cannot_write(path: Path, error: OSError) -> RenderGraphError:
+    """The diagnostic for a failed write."""
+    reasons = {
+        errno.ENOSPC: "the disk is full",
+        errno.EACCES: "no permission",
+        errno.EROFS: "the file system is read-only",
+        errno.ENOTDIR: "part of the path is a file, not a folder",
+        errno.EISDIR: "a folder of that name is in the way",
+        errno.EEXIST: "a file is in the way of the folder",
+    }
+    reason = reasons.get(error.errno or 0, (error.strerror or str(error)).lower())
+    return RenderGraphError([diagnose("RG560", path=str(path), reason=reason)], exit_code=2)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

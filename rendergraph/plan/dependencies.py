@@ -1,0 +1,120 @@
+"""Which sub-pass needs which: the order every schedule must keep, and the data that truly flows.
+
+Each cell's touches are walked once, writer by writer: read after write, write after read and write after write follow
+in linear time. Loads of content that nobody made are errors here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
+from rendergraph.plan.graph import Decision
+from rendergraph.plan.index import LOADS, PRESET, WRITES, Index
+from rendergraph.plan.precedence import find_precedence
+
+
+@dataclass(slots=True)
+class Dependencies:
+    """Per sub-pass: ``needs`` must run before it for any reason; ``sources`` made content it loads (data flow only);
+    ``replaced_by`` overwrote some of its content before anybody read it. ``final``: per cell, its last writer or -1.
+    ``order``: one legal order, grouped by pass. Lists may name a sub-pass twice."""
+
+    needs: list[list[int]]
+    sources: list[list[int]]
+    replaced_by: dict[int, list[int]]
+    final: list[int]
+    order: list[int]
+    decisions: list[Decision]
+
+
+def find_dependencies(index: Index) -> Dependencies:
+    """Derive all edges between sub-passes. Raises ``RenderGraphError`` with every mistake found."""
+    precedence = find_precedence(index)
+    count = len(index.subpasses)
+    needs: list[list[int]] = [[] for _ in range(count)]
+    sources: list[list[int]] = [[] for _ in range(count)]
+    replaced_by: dict[int, list[int]] = {}
+    final: list[int] = []
+    blank: dict[tuple[int, int], int] = {}  # (sub-pass, resource) -> cells it loads that hold nothing yet
+    for cell, touches in enumerate(precedence.sequence):
+        writer = -1
+        readers: list[int] = []
+        for subpass, flags in touches:
+            if flags & LOADS:
+                if writer >= 0:
+                    needs[subpass].append(writer)
+                    sources[subpass].append(writer)
+                else:
+                    key = subpass, index.resource_of[cell]
+                    blank[key] = blank.get(key, 0) + 1
+            if flags & WRITES:
+                needs[subpass] += readers
+                if writer >= 0 and not readers and not flags & LOADS:
+                    needs[subpass].append(writer)
+                    replaced_by.setdefault(writer, []).append(subpass)
+                writer, readers = subpass, []
+            else:
+                readers.append(subpass)
+        final.append(writer)
+    _follow_after(index, needs)
+    errors = [*precedence.errors, *_undefined_loads(index, blank), *_unwritten(index)]
+    if errors:
+        raise RenderGraphError(errors)
+    order = [subpass for p in precedence.passes for subpass in index.steps[p]]
+    return Dependencies(needs, sources, replaced_by, final, order, precedence.decisions)
+
+
+def _follow_after(index: Index, needs: list[list[int]]) -> None:
+    """``after:`` binds every sub-pass of one pass behind every sub-pass of another."""
+    number = {found.name: i for i, found in enumerate(index.passes)}
+    for p, found in enumerate(index.passes):
+        for name in found.after:
+            if name in number:
+                for subpass in index.steps[p]:
+                    needs[subpass].extend(index.steps[number[name]])
+
+
+def _undefined_loads(index: Index, blank: dict[tuple[int, int], int]) -> list[Diagnostic]:
+    """An error for each load of which *no* cell was ever written. A load that is defined in part is let through: a
+    mip chain is often filled level by level and bound whole."""
+    errors: list[Diagnostic] = []
+    told: set[tuple[int, int]] = set()
+    for (subpass, number), cells in sorted(blank.items()):
+        resource, owner = index.resources[number], index.pass_of[subpass]
+        if resource.kind in PRESET or (owner, number) in told:
+            continue
+        touches = [dict(index.touches[cell]).get(subpass, 0) for cell in index.cells_of[resource.name]]
+        if cells < sum(bool(flags & LOADS) for flags in touches):
+            continue
+        told.add((owner, number))
+        if not any(flags & WRITES for cell in index.cells_of[resource.name] for _, flags in index.touches[cell]):
+            code = "RG231"
+        else:
+            code = "RG232" if any(flags & WRITES for flags in touches) else "RG237"
+        found = index.passes[owner]
+        errors.append(diagnose(code, found.position, resource=resource.name, name=found.name))
+    return errors
+
+
+def _unwritten(index: Index) -> list[Diagnostic]:
+    """Outputs and history sources that nothing writes, and writes to what is only to be read."""
+    errors: list[Diagnostic] = []
+
+    def writers(name: str) -> list[int]:
+        return [s for cell in index.cells_of[name] for s, flags in index.touches[cell] if flags & WRITES]
+
+    for name in sorted(index.graph.outputs):
+        if index.graph.resources[name].kind not in PRESET and not writers(name):
+            errors.append(diagnose("RG234", index.graph.resources[name].position, resource=name))
+    for resource in index.resources:
+        if resource.kind not in PRESET:
+            continue
+        source = resource.previous_of
+        if source is not None and index.graph.resources[source].kind not in PRESET and not writers(source):
+            errors.append(diagnose("RG235", resource.position, resource=resource.name, source=source))
+        if found := writers(resource.name):
+            writer = index.passes[index.pass_of[min(found)]]
+            data = {"resource": resource.name, "name": writer.name, "kind": resource.kind.value}
+            errors.append(diagnose("RG236", writer.position, **data))
+    return errors

@@ -1,0 +1,28 @@
+"""Checks a graph file without a GPU and without loading its scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rendergraph.document.load import Document, load_document
+from rendergraph.document.messages import Diagnostic, RenderGraphError
+from rendergraph.plan.compile import compile_plan
+from rendergraph.plan.expand import expand
+from rendergraph.plan.plan import Plan, PlanOptions
+
+
+def plan_without_scene(document: Document, options: PlanOptions) -> tuple[Plan, tuple[Diagnostic, ...]]:
+    """Plan a document as if its scene held every feature: the largest graph it can become."""
+    graph, warnings = expand(document)
+    plan, more = compile_plan(graph, options)
+    return plan, (*warnings, *more)
+
+
+def validate_graph(path: str | Path, overrides: Sequence[str] = ()) -> tuple[tuple[Diagnostic, ...], int]:
+    """All findings of one file, and the exit code they deserve: 0 fine (warnings allowed), 1 errors, 2 unreadable."""
+    try:
+        _, warnings = plan_without_scene(load_document(path, overrides), PlanOptions())
+    except RenderGraphError as error:
+        return error.diagnostics, error.exit_code
+    return warnings, 0

@@ -1,0 +1,108 @@
+"""Image files: PNG (sRGB), EXR (through the `exr` extra) and NPY out; PNG, JPEG and Radiance HDR in.
+
+Arrays are ``[height, width, channels]`` with the first row at the bottom, as OpenGL has them; files have it on top.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from rendergraph.document.messages import RenderGraphError, diagnose
+from rendergraph.document.whole_files import whole_file
+
+Pixels = npt.NDArray[Any]
+
+SUFFIXES = (".png", ".exr", ".npy")
+
+
+def write_image(path: Path, pixels: Pixels) -> None:
+    """Write pixels by the file's suffix.
+
+    ``.png``: uint8 is written as it is (display-referred already); anything else is clamped to 0..1 and encoded sRGB,
+    NaN as magenta so that it shows. ``.exr`` keeps float16/float32; ``.npy`` keeps everything.
+    Raises RenderGraphError RG561 (suffix), RG562 (no EXR library), RG560 (cannot write).
+    """
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise RenderGraphError([diagnose("RG561", path=str(path), suffix=suffix, known=", ".join(SUFFIXES))], 2)
+    top_down = np.ascontiguousarray(pixels[::-1])
+    with whole_file(path) as temporary:
+        if suffix == ".png":
+            _write_png(temporary, top_down)
+        elif suffix == ".npy":
+            np.save(temporary, top_down)
+        else:
+            _write_exr(temporary, top_down)
+
+
+def display_pixels(pixels: Pixels) -> npt.NDArray[np.uint8]:
+    """Any pixels as uint8 for display: depth and integers stretched to their range, floats encoded sRGB, NaN magenta."""
+    if pixels.dtype == np.uint8:
+        return pixels
+    if np.issubdtype(pixels.dtype, np.integer):
+        high = max(1, int(pixels.max(initial=0)))
+        return (pixels.astype(np.float64) * (255.0 / high)).astype(np.uint8)
+    values = pixels.astype(np.float32)
+    bad = np.isnan(values).any(axis=-1)
+    values = np.clip(np.nan_to_num(values, nan=0.0, posinf=1.0, neginf=0.0), 0.0, 1.0)
+    encoded = np.where(values <= 0.0031308, values * 12.92, 1.055 * np.power(values, 1 / 2.4) - 0.055)
+    out: npt.NDArray[np.uint8] = (encoded * 255.0 + 0.5).astype(np.uint8)
+    if out.shape[-1] == 4:
+        out[..., 3] = (values[..., 3] * 255.0 + 0.5).astype(np.uint8)
+    if bad.any() and out.shape[-1] >= 3:
+        out[bad, :3] = (255, 0, 255)
+    return out
+
+
+def _write_png(path: Path, pixels: Pixels) -> None:
+    from PIL import Image
+
+    shown = display_pixels(pixels)
+    channels = shown.shape[-1]
+    if channels == 1:
+        image = Image.fromarray(shown[..., 0])
+    elif channels == 2:  # two channels have no PNG form of their own: red and green
+        image = Image.fromarray(np.concatenate([shown, np.zeros_like(shown[..., :1])], axis=-1))
+    else:
+        image = Image.fromarray(shown[..., :3])  # alpha of a finished frame means nothing to a viewer
+    image.save(path, compress_level=1)
+
+
+def _write_exr(path: Path, pixels: Pixels) -> None:
+    try:
+        import OpenEXR
+    except ImportError:
+        raise RenderGraphError([diagnose("RG562", path=path.name)], exit_code=3) from None
+    kept = pixels if pixels.dtype in (np.float16, np.float32) else pixels.astype(np.float32)
+    names = {1: "Y", 3: "RGB", 4: "RGBA"}
+    channels = kept.shape[-1]
+    if channels in names:
+        data = kept[..., 0] if channels == 1 else kept
+        named = {names[channels]: np.ascontiguousarray(data)}
+    else:
+        named = {"RGBA"[i]: np.ascontiguousarray(kept[..., i]) for i in range(channels)}
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with OpenEXR.File(header, named) as file:
+        file.write(str(path))
+
+
+def read_image(path: Path) -> Pixels:
+    """Read an image: uint8[h, w, 4] for PNG and JPEG, float32[h, w, 4] for Radiance .hdr; first row at the bottom."""
+    if path.suffix.lower() == ".hdr":
+        from rendergraph.run.radiance_hdr import read_hdr
+
+        rgb = read_hdr(path)
+        pixels = np.concatenate([rgb, np.ones_like(rgb[..., :1])], axis=-1)
+    else:
+        from PIL import Image, UnidentifiedImageError
+
+        try:
+            with Image.open(path) as image:
+                pixels = np.asarray(image.convert("RGBA"))
+        except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+            raise RenderGraphError([diagnose("RG563", path=str(path), reason=str(error))], 2) from None
+    return np.ascontiguousarray(pixels[::-1])

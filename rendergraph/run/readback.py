@@ -1,0 +1,25 @@
+"""Reads resources back as arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rendergraph.device.buffers import read_buffer
+from rendergraph.device.context import Device
+from rendergraph.device.textures import read_texture
+from rendergraph.plan.plan import Plan
+from rendergraph.run.allocation import Allocation
+from rendergraph.run.result import Pixels
+
+
+def read_resource(device: Device, plan: Plan, storage: Allocation, name: str, frame: int) -> Pixels:
+    """A texture's first mip as ``[height, width, channels]`` (the layers of an array side by side), a buffer as
+    ``float32[1, words, 1]``; rows bottom-up.
+    """
+    if not storage.is_texture(name):
+        data = read_buffer(device, storage.buffer(name, frame))
+        return np.frombuffer(data, dtype=np.float32).reshape(1, -1, 1)
+    pixels = read_texture(device, storage.texture(name, frame))
+    if pixels.ndim == 4:
+        return np.concatenate(list(pixels), axis=1)
+    return pixels

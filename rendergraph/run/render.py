@@ -1,0 +1,123 @@
+"""Renders a document: plans it, runs its frames on the device, times them, and hands back pixels and numbers."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+
+from rendergraph.device.clock import choose_clock
+from rendergraph.device.context import Device, open_device
+from rendergraph.document.load import Document
+from rendergraph.document.messages import RenderGraphError, diagnose
+from rendergraph.plan.plan import PlanOptions
+from rendergraph.run.plan_document import PlannedDocument, plan_document
+from rendergraph.run.result import DeviceFacts, FrameResult, Pixels, RunTimes, SteadyState
+from rendergraph.run.runner import Runner
+from rendergraph.scene.cameras import orbit
+from rendergraph.scene.scene import Camera
+
+Progress = Callable[[str, int, int], None]
+
+#: Frames run again before timing, so that no pass is timed while the driver still compiles a variant of it.
+WARM_UP = 1
+
+
+@dataclass(frozen=True, slots=True)
+class RenderOptions:
+    """How to run a document. ``size``, ``frames`` and ``scene`` replace the file's own; ``samples`` is the number of
+    extra frames timed after the images are taken.
+    """
+
+    size: tuple[int, int] | None = None
+    frames: int | None = None
+    samples: int = 5
+    scene: str | None = None
+    captures: tuple[str, ...] = ()
+    poison: bool = False
+    full: bool = False
+    check_finite: bool = False
+    device: int | None = None
+    plan: PlanOptions = field(default_factory=PlanOptions)
+
+
+def render_document(
+    document: Document, options: RenderOptions | None = None, progress: Progress = lambda stage, done, total: None
+) -> FrameResult:
+    """Plan a document for its scene and run it on this process's device.
+
+    :raises RenderGraphError: for every mistake of the document, its files or its shaders, and where no GL is.
+    """
+    options = options or RenderOptions()
+    progress("planning", 0, 1)
+    planned = plan_document(
+        document, options.plan, scene=options.scene, size=options.size, frames=options.frames, full=options.full
+    )
+    for name in options.captures:
+        if name not in planned.plan.lifetimes:
+            known = ", ".join(sorted(planned.plan.lifetimes))
+            raise RenderGraphError([diagnose("RG564", name=name, known=known)], exit_code=2)
+    return run_plan(planned, document, open_device(options.device), options, progress)
+
+
+def run_plan(
+    planned: PlannedDocument, document: Document, device: Device, options: RenderOptions, progress: Progress
+) -> FrameResult:
+    """Run a plan's frames; see :func:`render_document`."""
+    plan = planned.plan
+    cameras = frame_cameras(planned)
+    runner = Runner(device, plan, planned.scene.scene if planned.scene else None, cameras, poison=options.poison)
+    try:
+        runner.prepare(lambda done, total: progress("compiling", done, total))
+        count = plan.graph.frame.count
+        files = {name: document.model.outputs[name].file for name in plan.graph.outputs}
+        images: dict[str, Pixels] = {}
+        captures: dict[str, Pixels] = {}
+        names: dict[str, str] = {}
+        first_ns, after_first = 0, device.counters.snapshot()
+        for index in range(count):
+            progress("rendering", index, count)
+            start = time.perf_counter_ns()
+            wanted = options.captures if index == count - 1 else ()
+            captures |= runner.run_frame(index, capture=wanted, check_finite=options.check_finite)
+            device.finish()
+            if index == 0:
+                first_ns, after_first = time.perf_counter_ns() - start, device.counters.snapshot()
+            for name, file in files.items():
+                if "{frame}" in file:
+                    key = f"{name}@{index}"
+                    images[key], names[key] = runner.read(name, index), file.replace("{frame}", f"{index:04d}")
+                elif index == count - 1:
+                    images[name], names[name] = runner.read(name, index), file
+        clock = choose_clock(device)
+        frames, steps = runner.time_frames(count, options.samples, WARM_UP, clock, progress)
+        steady = device.counters - after_first
+        return FrameResult(
+            plan=plan,
+            images=images,
+            files=names,
+            captures=captures,
+            times=RunTimes(
+                planned.plan_ns, planned.scene_ns, runner.compile_ns, runner.upload_ns, first_ns, frames, steps, WARM_UP
+            ),
+            steady=SteadyState(steady.objects_created, steady.programs_compiled, steady.bytes_uploaded),
+            device=DeviceFacts(
+                device.info.renderer, device.info.vendor, device.info.driver, clock.name, asdict(clock.proof)
+            ),
+            frames=count,
+            warnings=planned.warnings,
+        )
+    finally:
+        runner.release()
+
+
+def frame_cameras(planned: PlannedDocument) -> list[Camera]:
+    """One camera a frame: the scene's, moved along its orbit; a default one for graphs without a scene."""
+    count = planned.plan.graph.frame.count
+    if planned.scene is None:
+        return [Camera((0.0, 0.0, 1.0), (0.0, 0.0, 0.0))] * count
+    camera, turns = planned.scene.camera, planned.scene.orbit_turns
+    if not turns:
+        return [camera] * count
+    return [orbit(camera, turns * index / count) for index in range(count)]
+

@@ -1,0 +1,169 @@
+"""Runs a plan: compiles and allocates everything once, then replays the frame's commands."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+from rendergraph.device import enums
+from rendergraph.device.buffers import Buffer, create_buffer
+from rendergraph.device.context import Device
+from rendergraph.device.programs import LinkedProgram, compile_program
+from rendergraph.plan.graph import DrawScene
+from rendergraph.plan.plan import Plan
+from rendergraph.run.allocation import Allocation
+from rendergraph.run.bindings import FRAME_BINDING
+from rendergraph.run.commands import Command, CommandBuilder
+from rendergraph.run.finite import check_finite_writes
+from rendergraph.run.frame_constants import STRIDE, pack_frames
+from rendergraph.run.geometry import SceneGeometry
+from rendergraph.run.readback import read_resource
+from rendergraph.run.result import Pixels, StepTimes
+from rendergraph.scene.scene import Camera, Scene
+
+if TYPE_CHECKING:
+    from rendergraph.device.clock import Clock
+
+
+class Runner:
+    """One plan on one device. Call :meth:`prepare` once, :meth:`run_frame` for each frame, :meth:`release` at the end.
+
+    ``cameras`` holds one camera a frame; later frames reuse the last.
+    """
+
+    def __init__(
+        self, device: Device, plan: Plan, scene: Scene | None, cameras: list[Camera], *, poison: bool = False
+    ) -> None:
+        self._device = device
+        self._plan = plan
+        self._scene = scene
+        self._cameras = cameras
+        self._poison = poison
+        self._owned_before = set(device.owned)
+        self.compile_ns = 0
+        self.upload_ns = 0
+
+    def prepare(self, progress: Callable[[int, int], None] = lambda done, total: None) -> None:
+        """Compile every program, upload the scene and frame constants, allocate, and record the commands."""
+        device, plan = self._device, self._plan
+        start = time.perf_counter_ns()
+        self._programs = self._compile(progress)
+        middle = time.perf_counter_ns()
+        self._geometry: SceneGeometry | None = None
+        if self._scene is not None:
+            replays = frozenset(s.work.instances for s in plan.order if isinstance(s.work, DrawScene))
+            self._geometry = SceneGeometry(device, self._scene, self._cameras, replays)
+        blocks = pack_frames(plan.graph.frame, self._scene, self._cameras)
+        self._frame_block = create_buffer(device, blocks, "Frame")
+        self._storage = Allocation(device, plan)
+        self._commands = [self._build(parity) for parity in range(self._storage.parities)]
+        device.finish()
+        device.check()
+        self.upload_ns = time.perf_counter_ns() - middle
+        self.compile_ns = middle - start
+
+    def _compile(self, progress: Callable[[int, int], None]) -> dict[str, LinkedProgram]:
+        programs = {}
+        for index, subpass in enumerate(self._plan.order):
+            progress(index, len(self._plan.order))
+            if subpass.program is not None:
+                programs[subpass.name] = compile_program(
+                    self._device, subpass.program, subpass.position, subpass.uniforms
+                )
+        return programs
+
+    def _build(self, parity: int) -> list[Command]:
+        return CommandBuilder(
+            self._device, self._plan, self._storage, self._geometry, self._programs, parity, poison=self._poison
+        ).build()
+
+    # ---- frames
+
+    def _begin_frame(self, index: int) -> list[Command]:
+        at = min(index, len(self._cameras) - 1)
+        self._device.gl.glBindBufferRange(
+            enums.UNIFORM_BUFFER, FRAME_BINDING, self._frame_block.glo, at * STRIDE, STRIDE
+        )
+        if self._geometry is not None:
+            self._geometry.begin_frame(at)
+        return self._commands[index % len(self._commands)]
+
+    def run_frame(
+        self, index: int, *, capture: Iterable[str] = (), check_finite: bool = False
+    ) -> dict[str, Pixels]:
+        """Run one frame; give back the resources to ``capture``, each read right after the last sub-pass that uses it,
+        before another may take its memory.
+
+        :raises RenderGraphError: RG500 for a driver error, RG565 for the first NaN or Inf under ``check_finite``.
+        """
+        commands = self._begin_frame(index)
+        last: dict[int, list[str]] = {}
+        for name in capture:
+            last.setdefault(self._plan.lifetimes[name].last, []).append(name)
+        captured = {}
+        for position, command in enumerate(commands):
+            command.run()
+            if check_finite:
+                check_finite_writes(self._device, self._plan, command.subpass, self._storage, index)
+            for name in last.get(position, ()):
+                captured[name] = self.read(name, index)
+        self._device.check()
+        return captured
+
+    def read(self, name: str, index: int) -> Pixels:
+        """A resource's content after frame ``index``: ``[height, width, channels]``, first row at the bottom."""
+        return read_resource(self._device, self._plan, self._storage, name, index)
+
+    # ---- times
+
+    def time_frames(
+        self, first: int, count: int, warm_up: int, clock: Clock, progress: Callable[[str, int, int], None]
+    ) -> tuple[tuple[int, ...], tuple[StepTimes, ...]]:
+        """Run ``count`` frames pass by pass under the clock and ``count`` whole, in turn, after ``warm_up`` ones.
+
+        Nanoseconds. Timing a pass on its own ends its overlap with its neighbours, so both figures are kept.
+        """
+        if count == 0:
+            return (), ()
+        for index in range(first, first + warm_up):
+            self.run_frame(index)
+        index = first + warm_up
+        frames: list[int] = []
+        submit: list[list[int]] = []
+        for sample in range(count):
+            progress("timing", sample, count)
+            self._device.finish()
+            start = time.perf_counter_ns()
+            for command in self._begin_frame(index):
+                command.run()
+            self._device.finish()
+            frames.append(time.perf_counter_ns() - start)
+            submit.append(self._time_passes(index + 1, clock))
+            index += 2
+        samples = clock.drain()
+        steps = tuple(
+            StepTimes(subpass.name, tuple(s[i] for s in samples), tuple(s[i] for s in submit))
+            for i, subpass in enumerate(self._plan.order)
+        )
+        return tuple(frames), steps
+
+    def _time_passes(self, index: int, clock: Clock) -> list[int]:
+        submit = []
+        clock.begin_frame()
+        for position, command in enumerate(self._begin_frame(index)):
+            clock.begin(position)
+            start = time.perf_counter_ns()
+            command.run()
+            submit.append(time.perf_counter_ns() - start)
+            clock.end(position)
+        clock.end_frame()
+        return submit
+
+    def release(self) -> None:
+        """Delete every object this runner made."""
+        self._device.finish()
+        # Samplers are shared by every run through the device's cache.
+        mine = [key for key in self._device.owned if key not in self._owned_before and key[0] != "glDeleteSamplers"]
+        for delete, name in mine:
+            self._device.delete_object(delete, name)

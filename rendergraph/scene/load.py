@@ -1,0 +1,206 @@
+"""The scene a document asks for: geometry by name or file, then its camera and lights."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
+from rendergraph.document.models import CameraModel, LightsModel, PointsModel, SceneModel, SpotModel
+from rendergraph.document.suggest import closest, did_you_mean
+from rendergraph.plan.graph import Position
+from rendergraph.scene import procedural
+from rendergraph.scene.cameras import frame_scene
+from rendergraph.scene.scatter import scatter_lights
+from rendergraph.scene.scene import F64, Ambient, Camera, Light, Scene, Sun
+
+_SUFFIXES = (".glb", ".gltf")
+#: Lights of a scene that has none, so that its picture is not black.
+_DEFAULT_SUN = Sun((-0.36, -0.89, -0.28), (4.5, 4.3, 4.0))
+_DEFAULT_AMBIENT = Ambient((0.28, 0.33, 0.40), (0.16, 0.15, 0.14))
+#: Where scattered lights of shipped scenes go, metres: inside the walls.
+_LIGHT_VOLUMES = {
+    "atrium": ((-12.6, 0.4, -6.6), (12.6, 8.2, 6.6)),
+    "cornell": ((-2.5, 0.3, -2.5), (2.5, 5.2, 2.5)),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedScene:
+    """A scene ready to render: its lights are final; ``camera`` is the one to use, not one of ``scene.cameras``.
+
+    ``orbit_turns``: turns of the camera around its target over the run's frames; ``notes`` tell what was filled in
+    (severity ``note``).
+    """
+
+    scene: Scene
+    camera: Camera
+    orbit_turns: float = 0.0
+    notes: tuple[Diagnostic, ...] = ()
+
+
+def load_scene(
+    model: SceneModel,
+    folder: Path,
+    *,
+    frame_seed: int,
+    source_override: str | None = None,
+    position: Position | None = None,
+    camera_position: Position | None = None,
+) -> LoadedScene:
+    """Load ``model.source``: a shipped scene's name, or a glTF file relative to ``folder``.
+
+    ``source_override`` replaces it and is relative to the working directory; where it names another scene, the model's
+    camera placement, which was made for the first one, is left out. ``frame_seed`` seeds what the model does not seed
+    itself. ``position`` is where the source is written, ``camera_position`` the camera. ``RenderGraphError`` RG650 for
+    an unknown source, RG651 for an unreadable path, RG652 for an unknown camera, RG653 for a camera that looks nowhere,
+    and what ``load_gltf`` raises.
+    """
+    source = source_override if source_override is not None else model.source
+    notes: list[Diagnostic] = []
+    camera_model = model.camera
+    if source != model.source and {"name", "position", "target", "near", "far"} & camera_model.model_fields_set:
+        camera_model = CameraModel(**camera_model.model_dump(include={"fov", "orbit"}, exclude_unset=True))
+        notes.append(diagnose("RG655", camera_position, source=model.source, override=source))
+    scene_seed = model.seed if "seed" in model.model_fields_set else frame_seed
+    root = folder if source_override is None else Path()
+    scene = _geometry(source, root, detail=model.detail, seed=scene_seed, position=position)
+    if not scene.instances:
+        notes.append(diagnose("RG656", position, source=source))
+    notes += _apply_lights(scene, model.lights, frame_seed, position)
+    camera = _camera(scene, camera_model, camera_position or position)
+    orbit_turns = camera_model.orbit.turns if camera_model.orbit is not None else 0.0
+    return LoadedScene(scene, camera, orbit_turns, tuple(notes))
+
+
+def _geometry(source: str, root: Path, *, detail: float, seed: int, position: Position | None) -> Scene:
+    if source in procedural.SHIPPED:
+        return procedural.build(source, detail=detail, seed=seed)
+    if Path(source).suffix.lower() not in _SUFFIXES:
+        otherwise = "name a shipped scene ({choices}) or a .gltf or .glb file"
+        help = did_you_mean(source, procedural.SHIPPED, otherwise)
+        raise RenderGraphError([diagnose("RG650", position, source=source, hint=help)])
+    path = root / source
+    try:
+        reason = "it is a folder" if path.is_dir() else None if path.is_file() else "there is no such file"
+    except (OSError, ValueError) as error:  # a name too long, or one with a NUL
+        reason = str(error)
+    if reason is not None:
+        raise RenderGraphError([diagnose("RG651", position, path=str(path), reason=reason, hint=_nearest_file(path))])
+    from rendergraph.scene.gltf import load_gltf
+
+    return load_gltf(path)
+
+
+def _nearest_file(path: Path) -> str:
+    """A help line: the scene file beside ``path`` with the nearest name."""
+    try:
+        beside = [entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in _SUFFIXES]
+    except (OSError, ValueError):
+        return "check the path: it is relative to the graph file"
+    near = closest(path.name, beside)
+    return f"did you mean '{near}'?" if near else "check the path: it is relative to the graph file"
+
+
+# ---------------------------------------------------------------- camera
+
+
+def _camera(scene: Scene, model: CameraModel, position: Position | None) -> Camera:
+    """The model's camera: placed, by name, the scene's first, or one that frames the bounds; in this order."""
+    if model.name is not None:
+        base = next((c for c in scene.cameras if c.name == model.name), None)
+        if base is None:
+            hint = did_you_mean(model.name, [c.name for c in scene.cameras if c.name])
+            raise RenderGraphError([diagnose("RG652", position, name=model.name, scene=scene.name, hint=hint)])
+    elif scene.cameras:
+        base = scene.cameras[0]
+    else:
+        base = frame_scene(scene, math.radians(model.fov))
+    given = model.model_fields_set
+    eye = model.position or base.position
+    camera = replace(base, position=eye, target=_target(scene, model, base))
+    if math.dist(camera.position, camera.target) < 1e-6:
+        raise RenderGraphError([diagnose("RG653", position, point=camera.position)])
+    # A camera placed by hand is the model's own, defaults and all; one of the scene keeps what the model leaves open.
+    whole = model.position is not None
+    if whole or "up" in given:
+        camera = replace(camera, up=model.up)
+    if whole or "fov" in given:
+        camera = replace(camera, fov=math.radians(model.fov))
+    if whole or {"near", "far"} & given:
+        near = model.near if whole or "near" in given else camera.near
+        far = model.far if whole or "far" in given else camera.far
+        camera = replace(camera, near=near, far=far if far is None or far > near else None)
+    return camera
+
+
+def _target(scene: Scene, model: CameraModel, base: Camera) -> tuple[float, float, float]:
+    if model.target is not None:
+        return model.target
+    if model.position is None:
+        return base.target
+    low, high = scene.bounds()
+    x, y, z = ((low + high) / 2.0).tolist()
+    return x, y, z
+
+
+# ---------------------------------------------------------------- lights
+
+
+def _apply_lights(scene: Scene, model: LightsModel, frame_seed: int, position: Position | None) -> list[Diagnostic]:
+    """Replace the scene's lights by the model's, joined with its own where ``from_scene``."""
+    if not model.from_scene:
+        scene.lights, scene.sun, scene.ambient = [], None, None
+    if model.sun is not None:
+        x, y, z = _unit(model.sun.direction)
+        scene.sun = Sun((x, y, z), _scaled(model.sun.color, model.sun.illuminance))
+    if model.ambient is not None:
+        scene.ambient = Ambient(model.ambient.sky, model.ambient.ground)
+    if model.points is not None:
+        seed = model.points.seed if "seed" in model.points.model_fields_set else frame_seed
+        scene.lights += _scattered(scene, model.points, seed)
+    for light in model.list:
+        color = _scaled(light.color, light.intensity)
+        if isinstance(light, SpotModel):
+            x, y, z = _unit(light.direction)
+            inner, outer = math.radians(light.inner), math.radians(light.outer)
+            scene.lights.append(Light(light.position, color, light.radius, (x, y, z), inner, outer))
+        else:
+            scene.lights.append(Light(light.position, color, light.radius))
+    asked = model.model_fields_set - {"from_scene"}
+    if asked or scene.lights or scene.sun is not None or scene.ambient is not None:
+        return []
+    scene.sun, scene.ambient = _DEFAULT_SUN, _DEFAULT_AMBIENT
+    return [diagnose("RG654", position, scene=scene.name)]
+
+
+def _scattered(scene: Scene, points: PointsModel, seed: int) -> list[Light]:
+    low, high = light_volume(scene)
+    return scatter_lights(
+        points.count, low, high, seed=seed, intensity=points.intensity, radius=points.radius, cutoff=points.cutoff
+    )
+
+
+def light_volume(scene: Scene) -> tuple[F64, F64]:
+    """The box scattered lights fill, metres: within the walls of shipped rooms, else the bounds less 5 % a side."""
+    if scene.name in _LIGHT_VOLUMES:
+        low, high = (np.array(corner) for corner in _LIGHT_VOLUMES[scene.name])
+        return low, high
+    low, high = scene.bounds()
+    margin = (high - low) * 0.05
+    return low + margin, high - margin
+
+
+def _scaled(color: tuple[float, float, float], factor: float) -> tuple[float, float, float]:
+    red, green, blue = color
+    return red * factor, green * factor, blue * factor
+
+
+def _unit(direction: tuple[float, float, float]) -> list[float]:
+    """Scaled by the largest component first, so that no square over- or underflows."""
+    vector = np.asarray(direction, float)
+    vector = vector / np.abs(vector).max()
+    return [float(c) for c in vector / np.linalg.norm(vector)]

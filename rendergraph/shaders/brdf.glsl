@@ -1,0 +1,81 @@
+// The one surface model: Lambert diffuse under GGX specular, metallic-roughness parameters.
+//
+// GGX: Walter et al. 2007. Height-correlated Smith masking and shadowing: Heitz 2014 (JCGT 3(2)). Fresnel: Schlick 1994.
+#ifndef BRDF_GLSL
+#define BRDF_GLSL
+
+const float PI = 3.14159265358979;
+const float DIELECTRIC_F0 = 0.04; // index of refraction 1.5
+const float MIN_ALPHA = 0.002;    // keeps the peak of D, 1 / (pi alpha^2), inside float32 with room for bright lights
+const float MIN_NOV = 1e-4;       // shading normals may face away from the eye; masking is singular at grazing
+
+// What the surface model needs of a point, computed once for all lights.
+struct Brdf {
+    vec3 normal;
+    vec3 view;      // unit vector to the eye
+    vec3 diffuse;   // albedo of the Lambert part
+    vec3 f0;
+    float alpha;
+    float nov;
+};
+
+Brdf make_brdf(vec3 normal, vec3 view, vec3 base_color, float roughness, float metallic) {
+    Brdf b;
+    b.normal = normal;
+    b.view = view;
+    b.diffuse = base_color * (1.0 - metallic);
+    b.f0 = mix(vec3(DIELECTRIC_F0), base_color, metallic);
+    b.alpha = max(roughness * roughness, MIN_ALPHA);
+    b.nov = max(dot(normal, view), MIN_NOV);
+    return b;
+}
+
+// GGX normal distribution [1/sr]. 1 - NoH^2 is taken as |N x H|^2: near the peak the difference would cancel, and at
+// alpha = 0.002 the float32 error of NoH alone would be a few percent of the result.
+float ggx_distribution(vec3 normal, vec3 half_vector, float alpha) {
+    vec3 c = cross(normal, half_vector);
+    float a = alpha * dot(normal, half_vector);
+    float k = alpha / (dot(c, c) + a * a);
+    return k * k / PI;
+}
+
+// Height-correlated Smith G2 / (4 NoL NoV).
+float smith_visibility(float nol, float nov, float alpha) {
+    float a2 = alpha * alpha;
+    float shadowing = nov * sqrt(nol * nol * (1.0 - a2) + a2);
+    float masking = nol * sqrt(nov * nov * (1.0 - a2) + a2);
+    return 0.5 / (shadowing + masking);
+}
+
+vec3 schlick_fresnel(vec3 f0, float cosine) {
+    float m = clamp(1.0 - cosine, 0.0, 1.0);
+    float m2 = m * m;
+    return f0 + (1.0 - f0) * (m2 * m2 * m);
+}
+
+// Reflected radiance per irradiance on a facing surface: f(L, V) * NoL. `light` is a unit vector, or zero for a light
+// that lies exactly on the surface, which gives zero.
+vec3 evaluate_brdf(Brdf b, vec3 light) {
+    float nol = min(dot(b.normal, light), 1.0);
+    if (nol <= 0.0) {
+        return vec3(0.0);
+    }
+    // L = -V leaves no half vector; that needs NoL > 0 > NoV, so any unit vector will do.
+    vec3 sum = light + b.view;
+    float length2 = dot(sum, sum);
+    vec3 half_vector = length2 > 1e-12 ? sum * inversesqrt(length2) : b.normal;
+    vec3 fresnel = schlick_fresnel(b.f0, dot(light, half_vector));
+    float specular = ggx_distribution(b.normal, half_vector, b.alpha) * smith_visibility(nol, b.nov, b.alpha);
+    return ((1.0 - fresnel) * b.diffuse / PI + fresnel * specular) * nol;
+}
+
+// Share of constant light from all around that the specular lobe reflects. Fit by Karis, "Physically based shading on
+// mobile" (2014), to Lazarov's; clamped, because the fit leaves 0..1 by a few thousandths.
+vec3 environment_reflectance(Brdf b, float roughness) {
+    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float a = min(r.x * r.x, exp2(-9.28 * b.nov)) * r.x + r.y;
+    vec2 scale_bias = vec2(-1.04, 1.04) * a + r.zw;
+    return clamp(b.f0 * scale_bias.x + scale_bias.y, 0.0, 1.0);
+}
+
+#endif

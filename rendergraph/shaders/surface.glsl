@@ -1,0 +1,98 @@
+// A fragment's surface, from its interpolated vertex and its material.
+//
+//   NORMAL_MAP  some material of the scene has a normal map
+#ifndef SURFACE_GLSL
+#define SURFACE_GLSL
+
+#include <scene.glsl>
+#include <textures.glsl>
+#define VARYING in
+#include <varyings.glsl>
+
+const int BASE_COLOR = 0;
+const int METALLIC_ROUGHNESS = 1;
+const int NORMAL = 2;
+const int OCCLUSION = 3;
+const int EMISSIVE = 4;
+
+// One texture of the fragment's material; white where it has none, the neutral factor of all five but the normal.
+vec4 sample_material(int slot, float rotation) {
+    bool second = materials[vertex.material].textures[slot].uv_set == 1u;
+    vec2 uv = second ? vertex.uv1 : vertex.uv0;
+    vec2 dx = second ? dFdx(vertex.uv1) : dFdx(vertex.uv0);
+    vec2 dy = second ? dFdy(vertex.uv1) : dFdy(vertex.uv0);
+    return sample_reference(materials[vertex.material].textures[slot], rotation, uv, dx, dy, vec4(1.0));
+}
+
+// Linear base colour with its alpha.
+vec4 material_base_color(vec4 texel) {
+    return materials[vertex.material].base_color * vertex.color * texel;
+}
+
+// True where an alpha-tested material is cut out.
+bool is_cut_out(float alpha) {
+    return (materials[vertex.material].flags & MASKED) != 0u && alpha < materials[vertex.material].emissive.w;
+}
+
+#if !DEPTH_ONLY
+struct Surface {
+    vec3 position;    // world [m]
+    vec3 normal;      // world, unit, on the viewer's side of double-sided geometry
+    vec3 base_color;  // linear
+    float alpha;
+    float roughness;  // perceptual
+    float metallic;
+    float occlusion;
+    vec3 emissive;    // radiance
+    bool unlit;
+};
+
+vec3 safe_normalize(vec3 v, vec3 otherwise) {
+    float length2 = dot(v, v);
+    return length2 > 1e-20 ? v * inversesqrt(length2) : otherwise;
+}
+
+// World-space shading normal. `texel`: the normal map's, 0..1 a channel.
+vec3 shading_normal(vec3 texel) {
+    vec3 normal = safe_normalize(vertex.normal, vec3(0.0, 1.0, 0.0));
+#if NORMAL_MAP
+    bool mapped = materials[vertex.material].textures[NORMAL].array != NO_TEXTURE;
+    if (mapped && dot(vertex.tangent.xyz, vertex.tangent.xyz) > 1e-20) {
+        // The frame of MikkTSpace: interpolated, not orthogonalised; the bitangent from the unnormalised pair's signs.
+        vec3 tangent = normalize(vertex.tangent.xyz);
+        vec3 bitangent = cross(normal, tangent) * (vertex.tangent.w < 0.0 ? -1.0 : 1.0);
+        float strength = materials[vertex.material].factors.z;
+        vec3 n = (texel * 2.0 - 1.0) * vec3(strength, strength, 1.0);
+        normal = safe_normalize(tangent * n.x + bitangent * n.y + normal * n.z, normal);
+    }
+#endif
+    // Front faces are set per draw with mirrored transforms in mind, so gl_FrontFacing needs no correction.
+    bool flip = (materials[vertex.material].flags & DOUBLE_SIDED) != 0u && !gl_FrontFacing;
+    return flip ? -normal : normal;
+}
+
+Surface fetch_surface() {
+    // A rolled loop: five inlined fetches would cost five times the compilation.
+    vec4 texels[5];
+    vec4 rotations = materials[vertex.material].rotation_0;
+    for (int slot = 0; slot < 5; ++slot) {
+        float rotation = slot < 4 ? rotations[slot] : materials[vertex.material].rotation_1.x;
+        texels[slot] = sample_material(slot, rotation);
+    }
+    vec4 base_color = material_base_color(texels[BASE_COLOR]);
+    vec4 factors = materials[vertex.material].factors;
+    Surface s;
+    s.position = vertex.position;
+    s.normal = shading_normal(texels[NORMAL].xyz);
+    s.base_color = base_color.rgb;
+    s.alpha = base_color.a;
+    s.metallic = clamp(factors.x * texels[METALLIC_ROUGHNESS].b, 0.0, 1.0);
+    s.roughness = clamp(factors.y * texels[METALLIC_ROUGHNESS].g, 0.0, 1.0);
+    s.occlusion = 1.0 + factors.w * (texels[OCCLUSION].r - 1.0);
+    s.emissive = materials[vertex.material].emissive.rgb * texels[EMISSIVE].rgb;
+    s.unlit = (materials[vertex.material].flags & UNLIT) != 0u;
+    return s;
+}
+#endif
+
+#endif
