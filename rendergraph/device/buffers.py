@@ -45,13 +45,13 @@ def create_buffer(device: Device, data: int | bytes | bytearray | NDArray[Any], 
     if size < 1:
         raise RenderGraphError([diagnose("RG525", label=label, reason="it would be empty", bytes=size)])
     device.debug.subject = label
-    glo = device.create("Buffers", label)
+    glo = device.create_object("glCreateBuffers", label=label)
     device.gl.glNamedBufferStorage(glo, size, None if block is None else _pointer(block), e.DYNAMIC_STORAGE_BIT)
     device.name(e.BUFFER, glo, label)
     if not device.debug.synchronous:
         device.debug.poll()
     if texts := device.debug.take_errors():
-        device.delete("Buffers", glo)
+        device.delete_object("glDeleteBuffers", glo)
         raise RenderGraphError([diagnose("RG521", label=label, bytes=size, detail="; ".join(texts))])
     buffer = Buffer(glo, size, label)
     if block is not None:
@@ -64,7 +64,7 @@ def create_buffer(device: Device, data: int | bytes | bytearray | NDArray[Any], 
 
 def destroy_buffer(device: Device, buffer: Buffer) -> None:
     """Delete the storage behind a buffer (or range)."""
-    device.delete("Buffers", buffer.glo)
+    device.delete_object("glDeleteBuffers", buffer.glo)
 
 
 def upload_buffer(device: Device, buffer: Buffer, data: bytes | bytearray | NDArray[Any], offset: int = 0) -> None:

@@ -126,7 +126,7 @@ class TimestampClock:
         """Start pass ``index``."""
         queries = self._ring[self._frame % RING]
         while len(queries) < 2 * index + 2:
-            queries.append(self.device.create("Queries", "pass time", e.TIMESTAMP))
+            queries.append(_query(self.device))
         self._cpu = time.process_time_ns()
         self._start = time.perf_counter_ns()
         self.device.gl.glQueryCounter(queries[2 * index], e.TIMESTAMP)
@@ -161,6 +161,13 @@ class TimestampClock:
         return [stamps[2 * i + 1] - stamps[2 * i] for i in range(count)]
 
 
+def _query(device: Device) -> int:
+    """A timestamp query; not counted, since it belongs to the measurement and not to the graph."""
+    name = device.gl.create("glCreateQueries", e.TIMESTAMP)
+    device.owned["glDeleteQueries", name] = "pass time"
+    return name
+
+
 def read_timestamp(device: Device, query: int) -> int:
     """A timestamp in nanoseconds, waited for; 64 bits, since 32 wrap after 4.3 s."""
     value = ctypes.c_uint64()
@@ -184,17 +191,19 @@ def choose_clock(device: Device) -> Clock:
 
 
 def prove_clock(device: Device) -> ClockProof:
-    """Time a raster and a compute load by both clocks."""
+    """Time a raster and a compute load by both clocks. What that makes is not counted: no graph asked for it."""
     bits = ctypes.c_int()
     device.gl.glGetQueryiv(e.TIMESTAMP, e.QUERY_COUNTER_BITS, ctypes.byref(bits))
     if bits.value < _ENOUGH_BITS:
         return ClockProof("no_counter", bits.value)
+    counted = device.counters.snapshot()
     loads = ProofLoads(device)
     try:
         raster = _time_load(device, loads.raster)
         compute = _time_load(device, loads.compute)
     finally:
         loads.release()
+        device.counters = counted
     reason = "agree" if all(agree(*pair) for pair in (raster, compute)) else "disagree"
     return ClockProof(reason, bits.value, *raster, *compute)
 
@@ -206,7 +215,7 @@ def agree(wall_ns: int, timestamp_ns: int) -> bool:
 
 def _time_load(device: Device, load: Callable[[], None]) -> tuple[int, int]:
     """Median wall and timestamp nanoseconds of a load, each measured with the other off."""
-    queries = [device.create("Queries", "clock proof", e.TIMESTAMP) for _ in range(2)]
+    queries = [_query(device) for _ in range(2)]
     load()
     device.finish()
     wall, stamps = [], []
@@ -222,5 +231,5 @@ def _time_load(device: Device, load: Callable[[], None]) -> tuple[int, int]:
         first, last = (read_timestamp(device, query) for query in queries)
         stamps.append(last - first)
     for query in queries:
-        device.delete("Queries", query)
+        device.delete_object("glDeleteQueries", query)
     return sorted(wall)[_REPEATS // 2], sorted(stamps)[_REPEATS // 2]

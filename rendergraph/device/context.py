@@ -115,21 +115,20 @@ class Device:
         """Wait until all submitted work is done, without holding the GIL."""
         self.gl.glFinish()
 
-    def create(self, kind: str, label: str, *target: int) -> int:
-        """A new object of ``kind`` (``Textures``, ``Buffers``, ``Framebuffers``, ``VertexArrays``, ...): its name.
+    def create_object(self, create: str, *target: int, label: str = "") -> int:
+        """A new object by a ``glCreate*`` (or ``glGen*``) entry point: its name.
 
-        Counted, and deleted by ``close`` at the latest. A texture view needs a name without a target: no ``target``.
+        Counted, and deleted by ``close`` at the latest.
         """
-        entry = "glGenTextures" if kind == "Textures" and not target else f"glCreate{kind}"
-        name = self.gl.create(entry, *target)
+        name = self.gl.create(create, *target)
         self.counters.objects_created += 1
-        self.owned[f"glDelete{kind}", name] = label
+        self.owned[create.replace("glCreate", "glDelete").replace("glGen", "glDelete"), name] = label
         return name
 
-    def delete(self, kind: str, name: int) -> None:
-        """Delete an object made by :meth:`create`; nothing happens where it is gone already."""
-        if self.owned.pop((f"glDelete{kind}", name), None) is not None:
-            self.gl.delete(f"glDelete{kind}", name)
+    def delete_object(self, delete: str, name: int) -> None:
+        """Delete an object of :meth:`create_object` by its ``glDelete*``; nothing happens where it is gone already."""
+        if self.owned.pop((delete, name), None) is not None:
+            self.gl.delete(delete, name)
 
     def name(self, identifier: int, name: int, label: str) -> None:
         """Give an object its label for debuggers and the driver's messages."""
@@ -142,8 +141,6 @@ class Device:
         if _open is not self:
             return
         self.finish()
-        for linked in self.programs.values():
-            linked.release()
         for delete, name in list(self.owned):
             self.gl.delete(delete, name)
         for cache in (self.owned, self.samplers, self.programs):

@@ -60,7 +60,7 @@ def create_framebuffer(
         raise RenderGraphError([diagnose("RG523", label=label, reason=reason)])
     gl = device.gl
     device.debug.subject = label
-    glo = device.create("Framebuffers", label)
+    glo = device.create_object("glCreateFramebuffers", label=label)
     for index, (texture, mip, layer) in enumerate(colors):
         _attach(device, glo, e.COLOR_ATTACHMENT0 + index, texture, mip, layer)
     if depth is not None:
@@ -83,7 +83,7 @@ def create_framebuffer(
     status = gl.glCheckNamedFramebufferStatus(glo, e.DRAW_FRAMEBUFFER)
     errors = device.debug.take_errors()
     if status != e.FRAMEBUFFER_COMPLETE or errors:
-        device.delete("Framebuffers", glo)
+        device.delete_object("glDeleteFramebuffers", glo)
         reason = "; ".join(
             [_STATUS.get(status, hex(status)) if status != e.FRAMEBUFFER_COMPLETE else "", *errors]
         ).strip("; ")
@@ -94,7 +94,7 @@ def create_framebuffer(
 
 def destroy_framebuffer(device: Device, framebuffer: Framebuffer) -> None:
     """Delete a framebuffer; its textures live on."""
-    device.delete("Framebuffers", framebuffer.glo)
+    device.delete_object("glDeleteFramebuffers", framebuffer.glo)
 
 
 def bind_framebuffer(device: Device, framebuffer: Framebuffer) -> None:

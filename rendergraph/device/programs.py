@@ -109,10 +109,6 @@ class LinkedProgram:
             call = getattr(self._gl, f"glProgramUniform{uniform.components}{_SUFFIX[uniform.scalar]}")
             call(self.glo, uniform.location, elements, array)
 
-    def release(self) -> None:
-        """Delete the program."""
-        self.handle.release()
-
 
 def _is_a(scalar: str, value: float | int) -> bool:
     if scalar == "float":

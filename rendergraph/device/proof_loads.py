@@ -32,7 +32,7 @@ class ProofLoads:
         self._dispatch = compile_program(device, Program((("compute", _SHADERS / "proof.comp"),)))
         self._texture = create_texture(device, TextureDesc("r32f", _SIZE, _SIZE), "clock proof")
         self._target = create_framebuffer(device, [(self._texture, 0, None)], None, "clock proof")
-        self._vertices = device.create("VertexArrays", "clock proof")
+        self._vertices = device.create_object("glCreateVertexArrays", label="clock proof")
         for program, load in ((self._draw, self.raster), (self._dispatch, self.compute)):
             self._calibrate(program, load)
 
@@ -77,4 +77,4 @@ class ProofLoads:
         gl.glUseProgram(0)
         destroy_framebuffer(self._device, self._target)
         destroy_texture(self._device, self._texture)
-        self._device.delete("VertexArrays", self._vertices)
+        self._device.delete_object("glDeleteVertexArrays", self._vertices)

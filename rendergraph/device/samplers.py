@@ -28,7 +28,7 @@ def sampler(device: Device, filter: str, wrap: str, reversed_depth: bool) -> int
 def _create(device: Device, filter: str, wrap: str, reversed_depth: bool) -> int:
     gl = device.gl
     label = f"{filter} {wrap}"
-    glo = device.create("Samplers", label)
+    glo = device.create_object("glCreateSamplers", label=label)
     smooth = e.NEAREST if filter == "nearest" else e.LINEAR
     gl.glSamplerParameteri(glo, e.TEXTURE_MAG_FILTER, smooth)
     gl.glSamplerParameteri(glo, e.TEXTURE_MIN_FILTER, e.LINEAR_MIPMAP_LINEAR if filter == "mipmap" else smooth)

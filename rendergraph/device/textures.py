@@ -58,7 +58,7 @@ def create_texture(device: Device, desc: TextureDesc, label: str) -> Texture:
         raise RenderGraphError([diagnose("RG520", label=label, reason=reason)])
     gl, internal, target = device.gl, FORMATS[desc.format].internal_format, gl_target(desc)
     device.debug.subject = label
-    glo = device.create("Textures", label, target)
+    glo = device.create_object("glCreateTextures", target, label=label)
     size = (desc.width, desc.height)
     if desc.samples > 1 and desc.target is Target.D2_ARRAY:
         gl.glTextureStorage3DMultisample(glo, desc.samples, internal, *size, desc.layers, 1)
@@ -96,7 +96,7 @@ def create_view(
             diagnose("RG522", label=label, view=_say(desc), storage=_say(texture.desc), reason=reason)
         ])  # fmt: skip
     device.debug.subject = label
-    glo = device.create("Textures", label)
+    glo = device.create_object("glGenTextures", label=label)
     internal, target = FORMATS[desc.format].internal_format, gl_target(desc)
     # A volume is one layer to glTextureView, whatever its depth.
     layers = 1 if desc.target is Target.D3 else desc.layers
@@ -112,7 +112,7 @@ def create_view(
 
 def destroy_texture(device: Device, texture: Texture) -> None:
     """Delete a texture or view; storage goes with the last texture that uses it."""
-    device.delete("Textures", texture.glo)
+    device.delete_object("glDeleteTextures", texture.glo)
 
 
 def level_size(desc: TextureDesc, mip: int) -> tuple[int, int, int]:
@@ -236,7 +236,7 @@ def _accept(device: Device, glo: int, label: str, desc: TextureDesc) -> None:
     if not device.debug.synchronous:
         device.debug.poll()
     if texts := device.debug.take_errors():
-        device.delete("Textures", glo)
+        device.delete_object("glDeleteTextures", glo)
         if any("OUT_OF_MEMORY" in text.upper().replace(" ", "_") for text in texts):
             raise RenderGraphError([diagnose("RG521", label=label, bytes=desc.bytes)])
         raise RenderGraphError([diagnose("RG520", label=label, reason="; ".join(texts))])

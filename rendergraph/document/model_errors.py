@@ -125,7 +125,8 @@ def _mistake(detail: ErrorDetails, model: type[BaseModel], data: Any) -> Mistake
         return Mistake("type", loc, expected, _type_hint(expected, value) or hint, describe(value))
     if kind in _RANGES:
         phrase, bound = _RANGES[kind]
-        return Mistake("range", loc, f"{phrase} {context[bound]}", f"give {phrase} {context[bound]}", describe(value))
+        limit = f"{phrase} {context[bound]:.10g}"
+        return Mistake("range", loc, limit, f"give {limit}", describe(value))
     if kind in _LENGTHS:
         phrase, bound, unit = _LENGTHS[kind]
         limit = f"{phrase} {context[bound]} {unit}{'' if context[bound] == 1 else 's'}"

@@ -11,7 +11,7 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, JsonValue, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from rendergraph.document.formats import FORMATS
@@ -184,8 +184,25 @@ class SceneModel(Model):
     lights: LightsModel = Field(default_factory=lambda: LightsModel(), description="The lights.")
 
 
+def _required(*keys: str) -> dict[str, JsonValue]:
+    return {"required": [*keys]}
+
+
+#: ``ResourceModel._one_kind`` as far as a JSON Schema can say it.
+_KINDS: dict[str, JsonValue] = {
+    "oneOf": [
+        _required("bytes"),
+        _required("previous"),
+        _required("file"),
+        {"anyOf": [_required("format"), _required("like")], "not": _required("file")},
+    ]
+}
+
+
 class ResourceModel(Model):
     """A resource: a texture (format and size), a buffer (bytes), last frame's content (previous), or a file's."""
+
+    model_config = ConfigDict(json_schema_extra=_KINDS)
 
     format: FormatName | None = Field(None, description="Texture format.")
     scale: float | None = Field(None, gt=0, le=16, description="Size as a multiple of the frame's, or of `like`'s.")

@@ -13,12 +13,8 @@ from rendergraph.document.yaml_reader import read_yaml
 from rendergraph.plan.graph import Position
 
 USAGE = 2  # exit code
+SET_PREFIX = "--set "  # how the positions of an override name their file
 _NAMED = ("passes", "resources", "outputs")  # sections whose keys the author makes up
-
-
-def source_name(argument: str) -> str:
-    """How positions name an override."""
-    return f"--set {argument}"
 
 
 def apply_overrides(data: Any, root: Branch, overrides: Sequence[str]) -> tuple[Any, Branch, list[Diagnostic]]:
@@ -49,7 +45,7 @@ class _Override:
 
     @property
     def position(self) -> Position:
-        return Position(source_name(self.argument), 1, 1)
+        return Position(SET_PREFIX + self.argument, 1, 1)
 
     def dead_end(self, problem: str, hint: str) -> RenderGraphError:
         return RenderGraphError([diagnose("RG131", self.position, path=self.path, problem=problem, hint=hint)])
@@ -57,7 +53,7 @@ class _Override:
 
 def _parse(argument: str, problems: list[Diagnostic]) -> _Override:
     path, equals, _ = argument.partition("=")
-    file = source_name(argument)
+    file = SET_PREFIX + argument
     if not equals or not all(path.strip().split(".")) or len(argument) > 100_000:
         shown = argument if len(argument) <= 60 else argument[:57] + "..."
         raise RenderGraphError([diagnose("RG130", Position(file, 1, 1), argument=shown)])

@@ -75,8 +75,8 @@ def read_yaml(data: bytes, file: str) -> Reading:
     """Parse UTF-8 ``data``; ``file`` names it in positions.
 
     Mistakes that leave the rest readable are listed in ``problems``. Raises ``RenderGraphError`` where reading cannot
-    go on: RG103 too many values, RG104 syntax, RG106 a key that is a mapping or list, RG108 depth, RG109 aliases, RG111 a
-    second document.
+    go on: RG103 too many values, RG104 syntax, RG106 a key that is a mapping or list, RG108 depth, RG109 aliases,
+    RG111 a second document.
     """
     problems: list[Diagnostic] = []
     try:

@@ -15,7 +15,7 @@ from rendergraph.node.builder import Attachment, Binding, Builder, read_buffer, 
 from rendergraph.node.params import Params, knob
 from rendergraph.plan.graph import ADDITIVE, PREMULTIPLIED, Blend, BufferDesc, TextureDesc
 
-Identifier = Annotated[str, Field(pattern=r"^(?!gl_)[A-Za-z_][A-Za-z0-9_]*$", max_length=64)]
+Identifier = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=64)]
 Vector = Annotated[tuple[int, ...] | tuple[float, ...], Field(min_length=2, max_length=64)]
 Uniform = int | float | Vector
 Define = bool | int | float | Annotated[str, Field(pattern=r"^[A-Za-z0-9_.+\-*/() ]*$", max_length=200)]

@@ -21,9 +21,8 @@ class Connections:
     outputs: Mapping[str, Resource]
 
 
-def check_ports(name: str, node: Node[Any], found: Connections, findings: Findings) -> bool:
-    """Report every port of pass ``name`` that does not fit; whether all do."""
-    before = len(findings.errors)
+def check_ports(name: str, node: Node[Any], found: Connections, findings: Findings) -> None:
+    """Report every port of pass ``name`` that does not fit."""
     for direction, ports, connected in (("input", node.inputs, found.inputs), ("output", node.outputs, found.outputs)):
         for port, resource in connected.items():
             if port in ports:
@@ -33,7 +32,6 @@ def check_ports(name: str, node: Node[Any], found: Connections, findings: Findin
         if declared.like is not None and port in every and declared.like in every:
             _check_like(name, port, every[port], declared.like, every[declared.like], found, findings)
     _check_written(name, node, found, findings)
-    return len(findings.errors) == before
 
 
 def _check_port(

@@ -23,9 +23,8 @@ class NodeError(Exception):
     """A node's sub-passes contradict what it declares."""
 
 
-def check_subpasses(name: str, node: Node[Any], builder: Builder, has_scene: bool, findings: Findings) -> bool:
-    """Report what pass ``name`` may not do; whether all is well. Raises ``NodeError`` for a defect of the node."""
-    before = len(findings.errors)
+def check_subpasses(name: str, node: Node[Any], builder: Builder, has_scene: bool, findings: Findings) -> None:
+    """Report what pass ``name`` may not do. Raises ``NodeError`` for a defect of the node."""
     inputs = {resource.name for resource in builder.inputs.values()}
     outputs = {resource.name for resource in builder.outputs.values()}
     visible = {r.name: r for r in (*builder.inputs.values(), *builder.outputs.values(), *builder.resources.values())}
@@ -46,7 +45,6 @@ def check_subpasses(name: str, node: Node[Any], builder: Builder, has_scene: boo
     missing = [port for port, r in builder.outputs.items() if r.name not in written and not node.modifies(port)]
     if missing:
         raise NodeError(f"no sub-pass writes the output {' and '.join(sorted(missing))}")
-    return len(findings.errors) == before
 
 
 def _check_access(name: str, access: Access, resource: Resource, findings: Findings) -> None:

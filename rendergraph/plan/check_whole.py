@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
+from typing import Any
 
 from rendergraph.document.suggest import did_you_mean
 from rendergraph.node.params import Params
@@ -12,11 +12,10 @@ from rendergraph.plan.graph import BarrierIntent, BufferDesc, Kind, Pass, Resour
 from rendergraph.plan.graph_files import locate, named_files
 
 
-def check_files(name: str, params: Params, folder: Path, findings: Findings) -> bool:
-    """Report parameters of pass ``name`` that name a file outside the graph's folder, or none; whether all are fine."""
-    before = len(findings.errors)
+def check_files(name: str, params: Params, findings: Findings) -> None:
+    """Report parameters of pass ``name`` that name a file outside the graph's folder, or none."""
     for field, file in named_files(params):
-        path = locate(folder, file)
+        path = locate(findings.folder, file)
         if path is None:
             problem = "lies outside the graph's folder"
         elif path.is_dir():
@@ -25,10 +24,14 @@ def check_files(name: str, params: Params, folder: Path, findings: Findings) -> 
             problem = "does not exist"
         else:
             continue
-        findings.add(
-            "RG222", "passes", name, "set", field, name=name, field=field, file=file, problem=problem, folder=folder
-        )
-    return len(findings.errors) == before
+        values: dict[str, Any] = {
+            "name": name,
+            "field": field,
+            "file": file,
+            "problem": problem,
+            "folder": findings.folder,
+        }
+        findings.add("RG222", "passes", name, "set", field, **values)
 
 
 def check_use(findings: Findings, resources: Mapping[str, Resource | None]) -> set[str]:
@@ -53,35 +56,28 @@ def check_use(findings: Findings, resources: Mapping[str, Resource | None]) -> s
 def check_outputs(
     findings: Findings,
     resources: Mapping[str, Resource | None],
-    internal: Mapping[str, Mapping[str, Resource]],
+    internal: Mapping[str, Resource],
     passes: Mapping[str, Pass],
-) -> list[str]:
-    """Report outputs that cannot be written; the names of those that can."""
+) -> None:
+    """Report outputs that nobody writes, or that cannot become the file they name."""
     model = findings.document.model
     written = {name for p in model.passes.values() for name in p.write.values()}
-    fine: list[str] = []
     files: dict[str, str] = {}
     for name in sorted(model.outputs):
-        before = len(findings.errors)
         _check_output_file(findings, name, files)
         owner = name.partition(".")[0]
-        found = resources.get(name) or internal.get(owner, {}).get(name)
+        found = resources.get(name) or internal.get(name)
         if found is None:
-            if name in resources or (owner in model.passes and owner not in passes):
-                continue  # wrong, and reported where it is wrong
-            if owner in passes:
-                hint = did_you_mean(name, internal[owner])
+            if owner in passes and name not in resources:
+                hint = did_you_mean(name, [n for n in internal if n.startswith(f"{owner}.")])
                 findings.add("RG220", "outputs", name, key=True, resource=name, owner=owner, hint=hint)
-            else:
-                hint = did_you_mean(name, [*model.resources, *model.passes])
+            elif name not in resources and owner not in model.passes:
+                hint = did_you_mean(owner, model.passes)
                 findings.add("RG213", "outputs", name, key=True, resource=name, hint=hint)
-            continue
+            continue  # otherwise it is wrong, and reported where it is wrong
         if found.declared and found.kind in (Kind.TRANSIENT, Kind.PERSISTENT) and name not in written:
             findings.add("RG213", "outputs", name, key=True, resource=name, hint=did_you_mean(name, written))
         _check_output_desc(findings, name, found)
-        if len(findings.errors) == before:
-            fine.append(name)
-    return fine
 
 
 def _check_output_file(findings: Findings, name: str, files: dict[str, str]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -39,6 +40,11 @@ class Findings:
     document: SourceDocument
     errors: list[Diagnostic] = field(default_factory=list)
     notes: list[Diagnostic] = field(default_factory=list)
+
+    @cached_property
+    def folder(self) -> Path:
+        """The graph file's folder, to which every file it names is relative."""
+        return self.document.path.resolve().parent
 
     def add(self, code: str, *loc: str | int, key: bool = False, **data: Any) -> None:
         """Record a row of the message table at ``loc``."""

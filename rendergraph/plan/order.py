@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import heapq
 import random
-from collections.abc import Callable
 
 from rendergraph.plan.dependencies import Dependencies
 from rendergraph.plan.graph import Decision
 from rendergraph.plan.index import Index
-from rendergraph.plan.lifetimes import LiveBytes
+from rendergraph.plan.memory_order import MemorySearch, pick_ready
 from rendergraph.plan.plan import PlanOptions
 
 
@@ -23,12 +21,17 @@ def order(
     needs = [sorted({n for n in found if live[n]}) if live[s] else [] for s, found in enumerate(dependencies.needs)]
     default = _depth_first(index, dependencies, needs, live)
     if options.order == "default":
-        return default, []
+        return default, [Decision("order", "depth_first_from_outputs", "frame")]
     if options.order == "random":
-        found = _pick_ready(needs, default, _any(random.Random(options.seed)))
+        chance = random.Random(options.seed)
+        found = pick_ready(needs, default, lambda ready: chance.randrange(len(ready)))
         return found, [Decision("order", "random_legal_order", "frame", {"seed": options.seed})]
     if options.order == "memory":
-        return _search(index, needs, default, options)
+        search = MemorySearch(index, needs, default)
+        found, trials = search.run(default, options.order_budget, options.seed)
+        before, after = search.cost(default)[0], search.cost(found)[0]
+        reason = "memory_search_improved" if after < before else "memory_search_found_no_better"
+        return found, [Decision("order", reason, "frame", {"trials": trials, "load_before": before, "load": after})]
     raise ValueError(f"no order '{options.order}': choose default, memory or random")
 
 
@@ -59,32 +62,4 @@ def _depth_first(index: Index, dependencies: Dependencies, needs: list[list[int]
                     own = pass_of[s]
                     waiting.sort(key=lambda n: (pass_of[n] != own, depth[n], -n))
                 stack += waiting
-    return result
-
-
-Choose = Callable[[list[int]], int]
-
-
-def _any(chance: random.Random) -> Choose:
-    return lambda ready: chance.randrange(len(ready))
-
-
-def _pick_ready(needs: list[list[int]], members: list[int], choose: Choose) -> list[int]:
-    """A topological order of ``members``: ``choose`` picks the index of the next among those that are ready."""
-    followers: dict[int, list[int]] = {s: [] for s in members}
-    waiting = {s: len(needs[s]) for s in members}
-    for s in members:
-        for n in needs[s]:
-            followers[n].append(s)
-    ready = sorted(s for s in members if not waiting[s])
-    result: list[int] = []
-    while ready:
-        at = choose(ready)
-        ready[at], ready[-1] = ready[-1], ready[at]
-        s = ready.pop()
-        result.append(s)
-        for later in followers[s]:
-            waiting[later] -= 1
-            if not waiting[later]:
-                ready.append(later)
     return result

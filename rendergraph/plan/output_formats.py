@@ -11,7 +11,7 @@ from rendergraph.plan.graph import BufferDesc, Decision, Frame, TextureDesc
 
 
 def undeclared_outputs(
-    findings: Findings, frame: Frame, nodes: Mapping[str, Node[Any] | None], decisions: list[Decision]
+    findings: Findings, frame: Frame, nodes: Mapping[str, Node[Any]], decisions: list[Decision]
 ) -> dict[str, TextureDesc | BufferDesc]:
     """Descriptions by name.
 
@@ -34,12 +34,12 @@ def undeclared_outputs(
     return found
 
 
-def _writers(findings: Findings, nodes: Mapping[str, Node[Any] | None]) -> dict[str, tuple[str, str]]:
+def _writers(findings: Findings, nodes: Mapping[str, Node[Any]]) -> dict[str, tuple[str, str]]:
     """(first format, pass.port) of the port that makes each resource: one that replaces, before ones that modify."""
     best: dict[str, tuple[bool, str, str]] = {}
     for name, node in nodes.items():
         for port, resource in findings.document.model.passes[name].write.items():
-            declared = node.outputs.get(port) if node else None
+            declared = node.outputs.get(port)
             if declared is not None and declared.formats:
                 candidate = (declared.modify, f"{name}.{port}", declared.formats[0])
                 best[resource] = min(best.get(resource, candidate), candidate)

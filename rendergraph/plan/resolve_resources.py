@@ -145,7 +145,7 @@ class ResourceResolver:
     # ---- image files
 
     def _image_file(self, name: str, model: ResourceModel, file: str) -> Resource | None:
-        loc, folder = ("resources", name, "file"), self.findings.document.path.resolve().parent
+        loc, folder = ("resources", name, "file"), self.findings.folder
         path = locate(folder, file)
         if path is None:
             self.findings.add("RG311", *loc, resource=name, file=file, folder=folder)

@@ -36,13 +36,19 @@ def timing_record(result: FrameResult, title: str = "") -> dict[str, Any]:
         inside = [steps[s.name] for s in parent.subpasses if s.name in steps]
         if not inside:
             continue
-        totals = [sum(values) for values in zip(*(s.gpu_ns for s in inside), strict=True)]
+        totals = [sum(values) for values in zip(*(s.device_ns for s in inside), strict=True)]
         passes.append({
             "name": name,
             "node": parent.node,
             "ms": spread(totals),
             "subpasses": [
-                {"name": s.name, "ms": spread(s.gpu_ns), "submit_ms": spread(s.cpu_ns)} for s in inside
+                {
+                    "name": s.name,
+                    "ms": spread(s.device_ns),
+                    "submit_ms": spread(s.submit_ns),
+                    "process_ms": spread(s.process_ns),
+                }
+                for s in inside
             ],
         })  # fmt: skip
     first_use = {s.parent: index for index, s in reversed(list(enumerate(result.plan.order)))}

@@ -39,7 +39,7 @@ def plan_document(
     """Load the scene (or ``scene`` in its place) and plan the document for it. No OpenGL."""
     start = time.perf_counter_ns()
     loaded = _load(document, scene)
-    features = SceneFeatures()
+    features: SceneFeatures | None = None
     if loaded is not None:
         features = replace(loaded.scene.features(), texture_arrays=len(place_textures(loaded.scene).arrays))
     middle = time.perf_counter_ns()

@@ -7,12 +7,11 @@ import numpy as np
 from rendergraph.device.buffers import read_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.textures import read_texture
-from rendergraph.plan.plan import Plan
 from rendergraph.run.allocation import Allocation
 from rendergraph.run.result import Pixels
 
 
-def read_resource(device: Device, plan: Plan, storage: Allocation, name: str, frame: int) -> Pixels:
+def read_resource(device: Device, storage: Allocation, name: str, frame: int) -> Pixels:
     """A texture's first mip as ``[height, width, channels]`` (the layers of an array side by side), a buffer as
     ``float32[1, words, 1]``; rows bottom-up.
     """

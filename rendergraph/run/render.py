@@ -74,7 +74,7 @@ def run_plan(
         images: dict[str, Pixels] = {}
         captures: dict[str, Pixels] = {}
         names: dict[str, str] = {}
-        first_ns, after_first = 0, device.counters.snapshot()
+        first_ns = 0
         for index in range(count):
             progress("rendering", index, count)
             start = time.perf_counter_ns()
@@ -89,16 +89,19 @@ def run_plan(
                     images[key], names[key] = runner.read(name, index), file.replace("{frame}", f"{index:04d}")
                 elif index == count - 1:
                     images[name], names[name] = runner.read(name, index), file
-        clock = choose_clock(device)
-        frames, steps = runner.time_frames(count, options.samples, WARM_UP, clock, progress)
+        warm_up = WARM_UP if options.samples else 0
+        for index in range(count, count + warm_up):
+            runner.run_frame(index)
         steady = device.counters - after_first
+        clock = choose_clock(device)
+        frames, steps = runner.time_frames(count + warm_up, options.samples, clock, progress)
         return FrameResult(
             plan=plan,
             images=images,
             files=names,
             captures=captures,
             times=RunTimes(
-                planned.plan_ns, planned.scene_ns, runner.compile_ns, runner.upload_ns, first_ns, frames, steps, WARM_UP
+                planned.plan_ns, planned.scene_ns, runner.compile_ns, runner.upload_ns, first_ns, frames, steps, warm_up
             ),
             steady=SteadyState(steady.objects_created, steady.programs_compiled, steady.bytes_uploaded),
             device=DeviceFacts(

@@ -15,11 +15,14 @@ Pixels = npt.NDArray[Any]
 
 @dataclass(frozen=True, slots=True)
 class StepTimes:
-    """One sub-pass: a sample a timed frame, in nanoseconds. ``cpu_ns`` is the time to submit it."""
+    """One sub-pass: a sample a timed frame, in nanoseconds. ``device_ns`` by the record's clock; ``submit_ns`` is the
+    time to hand it to the driver; ``process_ns`` the CPU time of all threads meanwhile.
+    """
 
     name: str
-    gpu_ns: tuple[int, ...]
-    cpu_ns: tuple[int, ...]
+    device_ns: tuple[int, ...]
+    submit_ns: tuple[int, ...]
+    process_ns: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,7 +80,8 @@ class Runner:
 
     # ---- frames
 
-    def _begin_frame(self, index: int) -> list[Command]:
+    def _commands_of(self, index: int) -> list[Command]:
+        """Point the frame's constants and draw commands at frame ``index``; its commands."""
         at = min(index, len(self._cameras) - 1)
         self._device.gl.glBindBufferRange(
             enums.UNIFORM_BUFFER, FRAME_BINDING, self._frame_block.glo, at * STRIDE, STRIDE
@@ -97,12 +98,11 @@ class Runner:
 
         :raises RenderGraphError: RG500 for a driver error, RG565 for the first NaN or Inf under ``check_finite``.
         """
-        commands = self._begin_frame(index)
         last: dict[int, list[str]] = {}
         for name in capture:
             last.setdefault(self._plan.lifetimes[name].last, []).append(name)
         captured = {}
-        for position, command in enumerate(commands):
+        for position, command in enumerate(self._commands_of(index)):
             command.run()
             if check_finite:
                 check_finite_writes(self._device, self._plan, command.subpass, self._storage, index)
@@ -113,52 +113,45 @@ class Runner:
 
     def read(self, name: str, index: int) -> Pixels:
         """A resource's content after frame ``index``: ``[height, width, channels]``, first row at the bottom."""
-        return read_resource(self._device, self._plan, self._storage, name, index)
+        return read_resource(self._device, self._storage, name, index)
 
     # ---- times
 
     def time_frames(
-        self, first: int, count: int, warm_up: int, clock: Clock, progress: Callable[[str, int, int], None]
+        self, first: int, count: int, clock: Clock, progress: Callable[[str, int, int], None]
     ) -> tuple[tuple[int, ...], tuple[StepTimes, ...]]:
-        """Run ``count`` frames pass by pass under the clock and ``count`` whole, in turn, after ``warm_up`` ones.
+        """Run ``count`` whole frames and ``count`` frames pass by pass under the clock, in turn, from frame ``first`` on.
 
         Nanoseconds. Timing a pass on its own ends its overlap with its neighbours, so both figures are kept.
         """
-        if count == 0:
-            return (), ()
-        for index in range(first, first + warm_up):
-            self.run_frame(index)
-        index = first + warm_up
-        frames: list[int] = []
-        submit: list[list[int]] = []
+        frames, submit, process = [], [], []
         for sample in range(count):
             progress("timing", sample, count)
             self._device.finish()
             start = time.perf_counter_ns()
-            for command in self._begin_frame(index):
+            for command in self._commands_of(first + 2 * sample):
                 command.run()
             self._device.finish()
             frames.append(time.perf_counter_ns() - start)
-            submit.append(self._time_passes(index + 1, clock))
-            index += 2
-        samples = clock.drain()
+            clock.begin_frame()
+            for position, command in enumerate(self._commands_of(first + 2 * sample + 1)):
+                clock.begin(position)
+                command.run()
+                clock.end(position)
+            clock.end_frame()
+            submit.append(clock.submit_ns)
+            process.append(clock.process_ns)
+        passes = clock.drain()
         steps = tuple(
-            StepTimes(subpass.name, tuple(s[i] for s in samples), tuple(s[i] for s in submit))
+            StepTimes(
+                subpass.name,
+                tuple(times[i] for times in passes),
+                tuple(times[i] for times in submit),
+                tuple(times[i] for times in process),
+            )
             for i, subpass in enumerate(self._plan.order)
         )
         return tuple(frames), steps
-
-    def _time_passes(self, index: int, clock: Clock) -> list[int]:
-        submit = []
-        clock.begin_frame()
-        for position, command in enumerate(self._begin_frame(index)):
-            clock.begin(position)
-            start = time.perf_counter_ns()
-            command.run()
-            submit.append(time.perf_counter_ns() - start)
-            clock.end(position)
-        clock.end_frame()
-        return submit
 
     def release(self) -> None:
         """Delete every object this runner made."""

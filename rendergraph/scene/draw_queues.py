@@ -1,4 +1,4 @@
-"""The scene as indirect draw commands, sorted into queues."""
+"""The scene as indirect draw commands, sorted into queues and cut into runs of equal state."""
 
 from __future__ import annotations
 
@@ -23,50 +23,8 @@ DRAW_COMMAND = np.dtype(
 
 Commands = npt.NDArray[np.void]
 
+#: By ``Alpha``.
 QUEUES = ("opaque", "masked", "blended")
-#: The keys of :func:`draw_queues`: each queue, single-sided (back faces culled) then double-sided (not culled).
-QUEUE_KEYS = tuple(f"{queue}{side}" for queue in QUEUES for side in ("", "_double_sided"))
-
-
-def draw_queues(scene: Scene, eye: tuple[float, float, float]) -> dict[str, Commands]:
-    """``DRAW_COMMAND[n]`` for each of ``QUEUE_KEYS`` (possibly empty), one command an instance.
-
-    ``opaque`` and ``masked`` run front to back by the distance from ``eye`` (world space) to the centre of the
-    instance's bounds, ``blended`` back to front; equal distances keep the order of ``Scene.instances``.
-    """
-    distances = _distances(scene, np.asarray(eye, dtype=np.float64))
-    members: dict[str, list[int]] = {key: [] for key in QUEUE_KEYS}
-    for index, instance in enumerate(scene.instances):
-        mesh = scene.meshes[instance.mesh]
-        material = scene.materials[mesh.material]
-        if mesh.index_count:
-            members[QUEUES[material.alpha] + ("_double_sided" if material.double_sided else "")].append(index)
-    return {key: _commands(scene, _sorted(key, indices, distances)) for key, indices in members.items()}
-
-
-def _sorted(key: str, indices: list[int], distances: F64) -> list[int]:
-    sign = -1.0 if key.startswith(QUEUES[Alpha.BLENDED]) else 1.0
-    return sorted(indices, key=lambda index: sign * float(distances[index]))
-
-
-def _distances(scene: Scene, eye: F64) -> F64:
-    if not scene.instances:
-        return np.zeros(0)
-    meshes = [scene.meshes[i.mesh] for i in scene.instances]
-    low = np.array([m.bounds_min for m in meshes], dtype=np.float64)
-    high = np.array([m.bounds_max for m in meshes], dtype=np.float64)
-    worlds = np.stack([i.world for i in scene.instances])
-    centres = np.einsum("nij,nj->ni", worlds[:, :3, :3], (low + high) / 2) + worlds[:, :3, 3]
-    distances: F64 = np.linalg.norm(centres - eye, axis=1)
-    return distances
-
-
-def _commands(scene: Scene, indices: list[int]) -> Commands:
-    commands = np.zeros(len(indices), dtype=DRAW_COMMAND)
-    for row, index in enumerate(indices):
-        mesh = scene.meshes[scene.instances[index].mesh]
-        commands[row] = (mesh.index_count, 1, mesh.first_index, mesh.base_vertex, index)
-    return commands
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,12 +37,13 @@ class DrawRun:
 
 
 def draw_runs(scene: Scene, eye: tuple[float, float, float]) -> dict[str, list[DrawRun]]:
-    """Each of ``QUEUES`` as runs to draw one after another.
+    """Each of ``QUEUES`` as runs to draw one after another, one command an instance.
 
-    ``opaque`` and ``masked`` are grouped by state, front to back inside a group; ``blended`` keeps its back-to-front
-    order by ``eye`` (world space) whatever the state, so neighbours of equal state form its runs.
+    ``opaque`` and ``masked`` are grouped by state and run front to back inside a group, by the distance from ``eye``
+    (world space) to the centre of the instance's bounds. ``blended`` keeps its back-to-front order whatever the state,
+    so neighbours of equal state form its runs. Equal distances keep the order of ``Scene.instances``.
     """
-    distances = _distances(scene, np.asarray(eye, dtype=np.float64))
+    distances, mirrored = _placements(scene, np.asarray(eye, dtype=np.float64))
     members: dict[str, list[int]] = {queue: [] for queue in QUEUES}
     state: dict[int, tuple[bool, bool]] = {}
     for index, instance in enumerate(scene.instances):
@@ -92,13 +51,34 @@ def draw_runs(scene: Scene, eye: tuple[float, float, float]) -> dict[str, list[D
         if mesh.index_count:
             material = scene.materials[mesh.material]
             members[QUEUES[material.alpha]].append(index)
-            state[index] = material.double_sided, bool(np.linalg.det(instance.world[:3, :3]) < 0)
+            state[index] = material.double_sided, bool(mirrored[index])
     runs: dict[str, list[DrawRun]] = {}
     for queue, indices in members.items():
-        ordered = _sorted(queue, indices, distances)
-        if queue != QUEUES[Alpha.BLENDED]:
-            ordered.sort(key=state.__getitem__)
+        if queue == QUEUES[Alpha.BLENDED]:
+            indices.sort(key=lambda index: -float(distances[index]))
+        else:
+            indices.sort(key=lambda index: (state[index], float(distances[index])))
         runs[queue] = [
-            DrawRun(_commands(scene, list(group)), *key) for key, group in groupby(ordered, key=state.__getitem__)
+            DrawRun(_commands(scene, list(group)), *key) for key, group in groupby(indices, key=state.__getitem__)
         ]
     return runs
+
+
+def _placements(scene: Scene, eye: F64) -> tuple[F64, npt.NDArray[np.bool_]]:
+    """Of each instance: distance from the eye to the centre of its bounds, and whether its transform mirrors."""
+    if not scene.instances:
+        return np.zeros(0), np.zeros(0, dtype=bool)
+    meshes = [scene.meshes[i.mesh] for i in scene.instances]
+    low = np.array([m.bounds_min for m in meshes], dtype=np.float64)
+    high = np.array([m.bounds_max for m in meshes], dtype=np.float64)
+    worlds = np.stack([i.world for i in scene.instances])
+    centres = np.einsum("nij,nj->ni", worlds[:, :3, :3], (low + high) / 2) + worlds[:, :3, 3]
+    return np.linalg.norm(centres - eye, axis=1), np.linalg.det(worlds[:, :3, :3]) < 0
+
+
+def _commands(scene: Scene, indices: list[int]) -> Commands:
+    commands = np.zeros(len(indices), dtype=DRAW_COMMAND)
+    for row, index in enumerate(indices):
+        mesh = scene.meshes[scene.instances[index].mesh]
+        commands[row] = (mesh.index_count, 1, mesh.first_index, mesh.base_vertex, index)
+    return commands

@@ -111,7 +111,7 @@ def _nearest_file(path: Path) -> str:
 def _camera(scene: Scene, model: CameraModel, position: Position | None) -> Camera:
     """The model's camera: placed, by name, the scene's first, or one that frames the bounds; in this order."""
     if model.name is not None:
-        base = next((c for c in scene.cameras if c.name == model.name), None)
+        base = next((c for c in scene.cameras if model.name in (c.name, c.node)), None)
         if base is None:
             hint = did_you_mean(model.name, [c.name for c in scene.cameras if c.name])
             raise RenderGraphError([diagnose("RG652", position, name=model.name, scene=scene.name, hint=hint)])

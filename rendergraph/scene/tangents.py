@@ -148,7 +148,8 @@ def _orthonormal(vectors: F64, normals: F64) -> F64:
 
 
 def _reject(vectors: F64, normals: F64) -> F64:
-    return vectors - normals * (vectors * normals).sum(axis=-1, keepdims=True)
+    result: F64 = vectors - normals * (vectors * normals).sum(axis=-1, keepdims=True)
+    return result
 
 
 def _unit(vectors: F64) -> F64:

@@ -76,7 +76,8 @@ def place_textures(scene: Scene) -> TexturePlacement:
         classes.setdefault((image.srgb, size_class(image.width, image.height)), []).append(index)
     while len(classes) > MAX_ARRAYS:
         _merge_cheapest(classes)
-    arrays, refs = [], {}
+    arrays: list[TextureArrayLayers] = []
+    refs: dict[int, tuple[int, int]] = {}
     for (srgb, size), members in sorted(classes.items(), key=lambda item: (not item[0][0], item[0][1])):
         if len(members) > MAX_LAYERS:
             raise RenderGraphError(

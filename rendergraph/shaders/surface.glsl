@@ -9,11 +9,12 @@
 #define VARYING in
 #include <varyings.glsl>
 
-const int BASE_COLOR = 0;
-const int METALLIC_ROUGHNESS = 1;
-const int NORMAL = 2;
-const int OCCLUSION = 3;
-const int EMISSIVE = 4;
+// Slots of Material.textures.
+const int SLOT_BASE_COLOR = 0;
+const int SLOT_METALLIC_ROUGHNESS = 1;
+const int SLOT_NORMAL = 2;
+const int SLOT_OCCLUSION = 3;
+const int SLOT_EMISSIVE = 4;
 
 // One texture of the fragment's material; white where it has none, the neutral factor of all five but the normal.
 vec4 sample_material(int slot, float rotation) {
@@ -56,7 +57,7 @@ vec3 safe_normalize(vec3 v, vec3 otherwise) {
 vec3 shading_normal(vec3 texel) {
     vec3 normal = safe_normalize(vertex.normal, vec3(0.0, 1.0, 0.0));
 #if NORMAL_MAP
-    bool mapped = materials[vertex.material].textures[NORMAL].array != NO_TEXTURE;
+    bool mapped = materials[vertex.material].textures[SLOT_NORMAL].array != NO_TEXTURE;
     if (mapped && dot(vertex.tangent.xyz, vertex.tangent.xyz) > 1e-20) {
         // The frame of MikkTSpace: interpolated, not orthogonalised; the bitangent from the unnormalised pair's signs.
         vec3 tangent = normalize(vertex.tangent.xyz);
@@ -79,17 +80,17 @@ Surface fetch_surface() {
         float rotation = slot < 4 ? rotations[slot] : materials[vertex.material].rotation_1.x;
         texels[slot] = sample_material(slot, rotation);
     }
-    vec4 base_color = material_base_color(texels[BASE_COLOR]);
+    vec4 base_color = material_base_color(texels[SLOT_BASE_COLOR]);
     vec4 factors = materials[vertex.material].factors;
     Surface s;
     s.position = vertex.position;
-    s.normal = shading_normal(texels[NORMAL].xyz);
+    s.normal = shading_normal(texels[SLOT_NORMAL].xyz);
     s.base_color = base_color.rgb;
     s.alpha = base_color.a;
-    s.metallic = clamp(factors.x * texels[METALLIC_ROUGHNESS].b, 0.0, 1.0);
-    s.roughness = clamp(factors.y * texels[METALLIC_ROUGHNESS].g, 0.0, 1.0);
-    s.occlusion = 1.0 + factors.w * (texels[OCCLUSION].r - 1.0);
-    s.emissive = materials[vertex.material].emissive.rgb * texels[EMISSIVE].rgb;
+    s.metallic = clamp(factors.x * texels[SLOT_METALLIC_ROUGHNESS].b, 0.0, 1.0);
+    s.roughness = clamp(factors.y * texels[SLOT_METALLIC_ROUGHNESS].g, 0.0, 1.0);
+    s.occlusion = 1.0 + factors.w * (texels[SLOT_OCCLUSION].r - 1.0);
+    s.emissive = materials[vertex.material].emissive.rgb * texels[SLOT_EMISSIVE].rgb;
     s.unlit = (materials[vertex.material].flags & UNLIT) != 0u;
     return s;
 }

@@ -11,31 +11,46 @@ const uint WRAP_CLAMP = 1u;
 const uint WRAP_MIRROR = 2u;
 
 #if TEXTURE_ARRAYS
-#if TEXTURE_ARRAYS > 8
-#error more texture arrays than this shader has samplers for
-#endif
-
 uniform sampler2DArray u_textures[TEXTURE_ARRAYS];
 
 // A sampler array may only be indexed by a value that is the same for all invocations; neighbours of another draw may
 // want another array. So: constant indices, chosen by a branch, and gradients from before it.
-#define EACH(i) case i: return textureGrad(u_textures[i], coordinate, dx, dy);
+#if TEXTURE_ARRAYS == 1
+#define EACH_ARRAY(DO) DO(0)
+#elif TEXTURE_ARRAYS == 2
+#define EACH_ARRAY(DO) DO(0) DO(1)
+#elif TEXTURE_ARRAYS == 3
+#define EACH_ARRAY(DO) DO(0) DO(1) DO(2)
+#elif TEXTURE_ARRAYS == 4
+#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3)
+#elif TEXTURE_ARRAYS == 5
+#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3) DO(4)
+#elif TEXTURE_ARRAYS == 6
+#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5)
+#elif TEXTURE_ARRAYS == 7
+#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6)
+#elif TEXTURE_ARRAYS == 8
+#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)
+#else
+#error more texture arrays than this shader has cases for
+#endif
+
+#define FETCH(i) case i: return textureGrad(u_textures[i], coordinate, dx, dy);
+#define SIZE(i) case i: return vec2(textureSize(u_textures[i], 0).xy);
+
 vec4 fetch_array(uint array, vec3 coordinate, vec2 dx, vec2 dy) {
     switch (int(array)) {
-#include <texture_cases.glsl>
-    default: return vec4(1.0);
+        EACH_ARRAY(FETCH)
+        default: return vec4(1.0);
     }
 }
-#undef EACH
 
-#define EACH(i) case i: return vec2(textureSize(u_textures[i], 0).xy);
 vec2 array_size(uint array) {
     switch (int(array)) {
-#include <texture_cases.glsl>
-    default: return vec2(1.0);
+        EACH_ARRAY(SIZE)
+        default: return vec2(1.0);
     }
 }
-#undef EACH
 
 // One coordinate, wrapped. Samplers repeat in hardware; clamped and mirrored coordinates stay `margin` (half a texel of
 // the coarsest level read) inside, so that filtering never reaches across the seam.

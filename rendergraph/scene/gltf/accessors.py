@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ from rendergraph.scene.gltf.document import Document
 from rendergraph.scene.gltf.items import Item, gltf_error
 from rendergraph.scene.scene import F32, U32
 
-COMPONENTS: Final = {
+COMPONENTS: Final[dict[int, np.dtype[Any]]] = {
     5120: np.dtype("<i1"),
     5121: np.dtype("<u1"),
     5122: np.dtype("<i2"),
@@ -60,7 +60,8 @@ class Accessors:
                     "RG608", str(where), got="an integer accessor", expected="floats or normalised integers"
                 )
             return values.astype(np.float32)
-        scaled = values.astype(np.float32) / np.float32(np.iinfo(values.dtype).max)
+        scaled = values.astype(np.float32)
+        scaled /= np.iinfo(values.dtype).max
         return np.maximum(scaled, np.float32(-1.0))
 
     def integers(self, where: Item, types: tuple[str, ...], components: tuple[int, ...]) -> U32:
@@ -75,7 +76,7 @@ class Accessors:
 
     def _decode(
         self, where: Item, types: tuple[str, ...], components: tuple[int, ...]
-    ) -> tuple[npt.NDArray[np.generic], bool]:
+    ) -> tuple[npt.NDArray[Any], bool]:
         accessor = self._item(where)
         kind = accessor.require("type").as_text()
         component = accessor.require("componentType").as_integer()
@@ -88,15 +89,15 @@ class Accessors:
         dtype, width = COMPONENTS[component], WIDTHS[kind]
         view = self._document.index(accessor, "bufferView", "bufferViews")
         if view is None:
-            values: npt.NDArray[np.generic] = np.zeros((count, width), dtype)
+            values: npt.NDArray[Any] = np.zeros((count, width), dtype)
         else:
             values = self._strided(view, accessor.integer("byteOffset", 0), count, width, dtype, accessor)
         sparse = accessor.get("sparse")
         return (values if sparse is None else self._replace(values, sparse)), normalized
 
     def _strided(
-        self, view: int, offset: int, count: int, width: int, dtype: np.dtype[np.generic], owner: Item
-    ) -> npt.NDArray[np.generic]:
+        self, view: int, offset: int, count: int, width: int, dtype: np.dtype[Any], owner: Item
+    ) -> npt.NDArray[Any]:
         content, stride = self._document.view_bytes(view)
         element = width * dtype.itemsize
         if stride is None:
@@ -110,7 +111,7 @@ class Accessors:
             raise gltf_error("RG607", str(owner), start=offset, end=end, what=what, size=len(content))
         return np.ndarray((count, width), dtype, content, offset, (stride, dtype.itemsize))
 
-    def _replace(self, values: npt.NDArray[np.generic], sparse: Item) -> npt.NDArray[np.generic]:
+    def _replace(self, values: npt.NDArray[Any], sparse: Item) -> npt.NDArray[Any]:
         count = sparse.require("count").as_integer(1, len(values))
         indices, replacements = sparse.require("indices"), sparse.require("values")
         component = indices.require("componentType").as_integer()

@@ -18,8 +18,8 @@ SUPPORTED = (
 )
 
 _ARRAYS = (
-    "accessors", "animations", "buffers", "bufferViews", "cameras", "images", "materials", "meshes", "nodes", "samplers",
-    "scenes", "skins", "textures",
+    "accessors", "animations", "buffers", "bufferViews", "cameras", "images", "materials", "meshes", "nodes",
+    "samplers", "scenes", "skins", "textures",
 )  # fmt: skip
 
 

@@ -19,6 +19,8 @@ def gltf_error(code: str, where: str, **data: Any) -> RenderGraphError:
 
 def printable(text: str) -> str:
     """The text without what no terminal or file can show: lone surrogates (legal in JSON) and control characters."""
+    if text.isprintable():
+        return text
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 

@@ -13,7 +13,6 @@ from rendergraph.scene.gltf.nodes import Hierarchy, read_hierarchy
 from rendergraph.scene.gltf.rigs import read_animation, read_skin, rest_transform
 from rendergraph.scene.gltf.viewpoints import read_camera, read_light
 from rendergraph.scene.scene import Camera, Instance, Light, Scene, Skin, Sun
-from rendergraph.scene.winding import unmirror_winding
 
 MAX_INSTANCES = 2**20
 
@@ -34,8 +33,8 @@ def load_gltf(path: Path) -> Scene:
     pool = MeshPool(document, accessors, images)
     instances = _instances(document, hierarchy, pool, skins)
     cameras, lights, sun = _viewpoints(document, hierarchy)
-    scene = Scene(
-        name=path.stem,
+    return Scene(
+        name=path.name,
         **pool.vertex_arrays(),
         meshes=pool.meshes,
         instances=instances,
@@ -49,8 +48,6 @@ def load_gltf(path: Path) -> Scene:
         animations=[read_animation(item, document, accessors) for item in document.arrays["animations"]],
         notes=document.notes,
     )
-    unmirror_winding(scene)
-    return scene
 
 
 def _instances(document: Document, hierarchy: Hierarchy, pool: MeshPool, skins: list[Skin]) -> list[Instance]:

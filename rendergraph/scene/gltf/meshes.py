@@ -18,7 +18,6 @@ from rendergraph.scene.scene import Material, Mesh, TextureUse
 MAX_VERTICES = 2**24
 MAX_INDICES = 2**26
 
-_VERTEX_ARRAYS = ("positions", "normals", "tangents", "uv0", "uv1", "colors")
 _WIDTHS = {"positions": 3, "normals": 3, "tangents": 4, "uv0": 2, "uv1": 2, "colors": 4}
 
 
@@ -49,9 +48,9 @@ class MeshPool:
             if joints is not None:
                 check_below(self._accessors.integers(joints, ("VEC4",), (5121, 5123)), count, joints, "joints")
 
-    def vertex_arrays(self) -> dict[str, npt.NDArray[Any]]:
+    def vertex_arrays(self) -> dict[str, Any]:
         """The pool's arrays by their names in ``Scene``."""
-        arrays: dict[str, npt.NDArray[Any]] = {
+        arrays: dict[str, Any] = {
             name: np.concatenate([np.zeros((0, width), np.float32), *(getattr(g, name) for g in self._geometries)])
             for name, width in _WIDTHS.items()
         }

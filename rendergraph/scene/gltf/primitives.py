@@ -36,7 +36,7 @@ class Geometry:
     def select(self, vertices: npt.NDArray[Any], indices: U32, **replaced: Any) -> Geometry:
         """The geometry with the given vertices (repeated or dropped) and indices into them."""
         arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in {"indices", *replaced}}
-        taken = {name: None if array is None else array[vertices] for name, array in arrays.items()}
+        taken: dict[str, Any] = {name: None if array is None else array[vertices] for name, array in arrays.items()}
         return Geometry(**taken, **replaced, indices=indices)
 
 
@@ -116,9 +116,9 @@ class _Attributes:
             return None, None
         joints = self._accessors.integers(item, ("VEC4",), (5121, 5123)).astype(np.uint16)
         weights = np.maximum(weights, 0)
-        sums = weights.sum(axis=1, keepdims=True)
-        weights[sums[:, 0] == 0] = (1.0, 0.0, 0.0, 0.0)
-        return joints, weights / np.where(sums > 0, sums, 1)
+        weights[~weights.any(axis=1)] = (1.0, 0.0, 0.0, 0.0)
+        weights /= weights.sum(axis=1, keepdims=True)
+        return joints, weights
 
     def _item(self, name: str) -> Item | None:
         item = self._attributes.get(name)
@@ -157,7 +157,7 @@ def _triangle_list(indices: U32, mode: int, primitive: Item) -> U32:
 def _unit_normals(normals: F32) -> F32:
     """Normals at unit length; +y for a zero one, which only faces without area should have."""
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    unit = normals / np.where(lengths > 1e-20, lengths, 1)
+    unit = (normals / np.where(lengths > 1e-20, lengths, 1)).astype(np.float32)
     unit[lengths[:, 0] <= 1e-20] = (0.0, 1.0, 0.0)
     return unit
 
@@ -191,7 +191,7 @@ def _with_tangents(
 
 
 def transform_uv(uv: F32, use: TextureUse) -> F32:
-    """KHR_texture_transform: scale, then rotate (counter-clockwise in the image), then move."""
+    """KHR_texture_transform: scale, then rotate the coordinates (the image turns clockwise), then move."""
     if use.scale == (1.0, 1.0) and use.rotation == 0.0:
         return uv  # an offset alone leaves tangents as they are
     cos, sin = np.cos(use.rotation), np.sin(use.rotation)

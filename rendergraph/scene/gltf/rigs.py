@@ -76,7 +76,7 @@ def _channel(node: int, path: str, sampler: Item, accessors: Accessors) -> Anima
 
 
 def _by_keyframe(values: F32, keyframes: int, path: str, interpolation: str, where: Item) -> F32:
-    """``float32[keyframes, n]``: a cubic spline has in-tangent, value and out-tangent in each row; weights any number."""
+    """``float32[keyframes, n]``: a cubic spline's rows are in-tangent, value, out-tangent; weights have any n."""
     per_frame = 3 if interpolation == "CUBICSPLINE" else 1
     rows, rest = divmod(len(values), keyframes * per_frame)
     if rest or (rows != 1 and path != "weights"):

@@ -17,7 +17,7 @@ IRRADIANCE_CUTOFF = 0.02
 
 
 def read_camera(item: Item, world: F64, node: str, document: Document) -> Camera | None:
-    """A perspective camera placed by its node, looking down the node's -z; none (and a note) for an orthographic one."""
+    """A perspective camera at its node, looking down the node's -z; none (and a note) for an orthographic one."""
     kind = item.require("type")
     if kind.as_text() == "orthographic":
         document.note(f"{item.path} is orthographic and was skipped")

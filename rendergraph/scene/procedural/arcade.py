@@ -5,6 +5,8 @@ One bay is ``BAY`` wide. Arches spring at ``y = 0`` of their own space and face 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rendergraph.scene.procedural.block import block
@@ -16,7 +18,6 @@ BAY = 3.0
 ARCH_RADIUS = 1.2
 RING = 0.26  # depth of the voussoirs
 THICKNESS = 0.5  # of the wall above the arches
-_VOUSSOIRS = 11
 _FLUTES = 20
 
 
@@ -106,60 +107,43 @@ def _curl(t: F64, start: float, end: float) -> F64:
 
 def arch_ring(detail: float) -> Geometry:
     """Voussoirs with chamfered joints around a semicircle, and a keystone that stands proud."""
-    step = np.pi / _VOUSSOIRS
-    pieces = []
-    for k in range(_VOUSSOIRS):
-        key = k == _VOUSSOIRS // 2
+    count = even_segments(detail, 6, 14) + 1
+    step = np.pi / count
+    bevel = 0.014 if detail > 0.15 else 0.0
+    stones = []
+    for k in range(count):
+        key = k == count // 2
         inner, outer = ARCH_RADIUS - (0.05 if key else 0.0), ARCH_RADIUS + RING + (0.10 if key else 0.0)
-        deep = THICKNESS + (0.16 if key else 0.06)
-        bevel = 0.014 if detail > 0.15 else 0.0
-        stone = block((step * ARCH_RADIUS - 0.004, outer - inner, deep), bevel=bevel)
-        if bevel == 0.0:  # the bed joints touch their neighbours: drop them
-            stone = _without_sides(stone)
-        pieces.append(_bent(stone, np.pi - (k + 0.5) * step, (inner + outer) / 2.0, segments(detail, 1, 3), offset=0.37 * k))
-    return merge(pieces)
+        stone = block((step * ARCH_RADIUS, outer - inner, THICKNESS + (0.16 if key else 0.06)), bevel=bevel)
+        if bevel == 0.0 and not key:
+            stone = _without_joints(stone)
+        # A stone's own piece of the texture: neighbours are not cut from one slab.
+        stones.append(_bent(stone, np.pi - (k + 0.5) * step, (inner + outer) / 2.0).mapped(offset=(0.37 * k, 0.61 * k)))
+    return merge(stones)
 
 
-def _without_sides(stone: Geometry) -> Geometry:
-    keep = np.abs(stone.normals[stone.indices.reshape(-1, 3)[:, 0], 0]) < 0.5
-    return Geometry(stone.positions, stone.normals, stone.tangents, stone.uv, stone.indices.reshape(-1, 3)[keep].ravel())
+def _without_joints(stone: Geometry) -> Geometry:
+    """A block without its faces along x, which touch the neighbours'."""
+    triangles = stone.indices.reshape(-1, 3)
+    keep = np.abs(stone.normals[triangles[:, 0], 0]) < 0.5
+    return replace(stone, indices=triangles[keep].ravel())
 
 
-def _bent(stone: Geometry, angle: float, radius: float, cuts: int, offset: float) -> Geometry:
-    """A block wrapped around the arch: x becomes angle (falling, so that it keeps its handedness), y radius."""
-    if cuts > 1:
-        stone = _cut(stone, cuts)
+def _bent(stone: Geometry, angle: float, radius: float) -> Geometry:
+    """A block wrapped around the arch: x becomes falling angle, y radius, so that it keeps its handedness."""
     turn = angle - stone.positions[:, 0] / ARCH_RADIUS
     c, s = np.cos(turn), np.sin(turn)
-
-    def rotate(vectors: F64) -> F64:
-        # x to the falling-angle tangent (s, -c), y to the radius (c, s).
-        return np.stack([vectors[:, 0] * s + vectors[:, 1] * c, vectors[:, 1] * s - vectors[:, 0] * c, vectors[:, 2]], axis=1)
-
     reach = radius + stone.positions[:, 1]
-    positions = np.stack([reach * c, reach * s, stone.positions[:, 2]], axis=1)
-    tangents = np.column_stack([rotate(stone.tangents[:, :3]), stone.tangents[:, 3]])
-    return Geometry(positions, rotate(stone.normals), tangents, stone.uv + offset, stone.indices)
 
+    def turned(v: F64) -> F64:
+        return np.stack([v[:, 0] * s + v[:, 1] * c, v[:, 1] * s - v[:, 0] * c, v[:, 2]], axis=1)
 
-def _cut(stone: Geometry, cuts: int) -> Geometry:
-    """Split triangles that span the block's length into strips along x, so that bending leaves a smooth curve."""
-    half = stone.positions[:, 0].max()
-    levels = np.linspace(-1.0, 1.0, cuts + 1)
-    pieces = []
-    inner = np.sort(np.unique(np.round(np.abs(stone.positions[:, 0]), 9)))[0]
-    for low, high in zip(levels[:-1], levels[1:], strict=True):
-        # Every vertex sits at x = +-inner or +-half; slide those at the cut ends to the strip's ends.
-        x = stone.positions[:, 0]
-        t = (np.clip(x / inner, -1.0, 1.0) + 1.0) / 2.0
-        slid = (low + (high - low) * t) * inner
-        slid = np.where((np.abs(x) > inner + 1e-9) & (np.sign(x) == np.sign(low + high)) & ((high == 1.0) | (low == -1.0)), np.sign(x) * half, slid)
-        moved = stone.positions.copy()
-        moved[:, 0] = slid
-        shift = (slid - x)[:, None] * stone.tangents[:, :1]
-        uv = stone.uv + np.concatenate([shift, np.zeros_like(shift)], axis=1)
-        pieces.append(Geometry(moved, stone.normals, stone.tangents, uv, stone.indices))
-    return merge(pieces)
+    return replace(
+        stone,
+        positions=np.stack([reach * c, reach * s, stone.positions[:, 2]], axis=1),
+        normals=turned(stone.normals),
+        tangents=np.column_stack([turned(stone.tangents[:, :3]), stone.tangents[:, 3]]),
+    )
 
 
 def spandrels(top: float, detail: float) -> Geometry:
@@ -194,13 +178,10 @@ def rib(detail: float) -> Geometry:
     def band(first: F64, second: F64, normal: F64, v: float) -> Geometry:
         points = np.stack([first, second])
         uv = np.stack([np.stack([arc, np.zeros_like(arc)], axis=-1), np.stack([arc, np.full_like(arc, v)], axis=-1)])
-        normals = np.broadcast_to(normal, points.shape).copy()
-        if np.dot(np.cross(points[0, 1] - points[0, 0], points[1, 0] - points[0, 0]), normals[0, 0]) < 0.0:
-            points, uv = points[::-1], uv[::-1]
-        return surface(points, uv, normals=normals)
+        return surface(points, uv, normals=np.broadcast_to(normal, points.shape).copy())
 
     under = band(out * inner - x, out * inner + x, -out, 2.0 * half)
-    left = band(out * inner - x, out * outer - x, -x / half, outer - inner)
+    left = band(out * outer - x, out * inner - x, -x / half, outer - inner)
     right = band(out * inner + x, out * outer + x, x / half, outer - inner)
     return merge([under, left, right])
 
@@ -218,10 +199,7 @@ def vault(rise: float, detail: float) -> Geometry:
     points = np.stack([p * half, height * rise, -q * half], axis=-1)
     normals = unit(np.stack([np.zeros_like(q), -height / rise, q / half], axis=-1))
     arc = np.arcsin(np.clip(q, -1.0, 1.0)) * half
-    web = surface(points[:, ::-1], np.stack([-arc, -p * half], axis=-1)[:, ::-1], normals=normals[:, ::-1])
-    a, b, c = (web.positions[web.indices[k]] for k in range(3))
-    if np.dot(np.cross(b - a, c - a), web.normals[web.indices[0]]) < 0.0:
-        web = surface(points, np.stack([-arc, -p * half], axis=-1), normals=normals)
+    web = surface(points, np.stack([arc, -p * half], axis=-1), normals=normals)
     webs = []
     for turn in range(4):
         cos, sin = [1.0, 0.0, -1.0, 0.0][turn], [0.0, 1.0, 0.0, -1.0][turn]

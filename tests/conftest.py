@@ -1,0 +1,37 @@
+"""Fixtures shared by all tests: the process's one OpenGL device."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from rendergraph.document.messages import RenderGraphError
+
+if TYPE_CHECKING:
+    from rendergraph.device.context import Device
+
+
+@pytest.fixture(scope="session")
+def session_device() -> Iterator[Device]:
+    """The device; tests are skipped where there is no OpenGL, unless ``RG_REQUIRE_GL`` demands it."""
+    from rendergraph.device.context import open_device
+
+    try:
+        opened = open_device()
+    except RenderGraphError as error:
+        if os.environ.get("RG_REQUIRE_GL"):
+            raise
+        pytest.skip(f"no OpenGL 4.5: {error}")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def device(session_device: Device) -> Iterator[Device]:
+    """The device; a test that leaves a driver error behind fails."""
+    session_device.check()
+    yield session_device
+    session_device.check()
