@@ -1,4 +1,4 @@
-"""The exposure by its definition, in float64: sorted texels instead of a histogram, plain sums instead of a reduction."""
+"""The exposure by its definition, in float64: sorted texels instead of a histogram, plain sums."""
 
 from __future__ import annotations
 

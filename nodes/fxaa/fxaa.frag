@@ -13,6 +13,8 @@ uniform float u_subpixel;
 
 out vec4 out_color;
 
+const float TIE = 1.0 / 4096.0;
+
 ivec2 limit;  // largest texel
 
 vec4 fetch(ivec2 texel) {
@@ -77,7 +79,8 @@ void main() {
     // Second differences down the columns are largest on a horizontal edge.
     float horizontal = 2.0 * abs(n + s - 2.0 * m) + abs(ne + se - 2.0 * e) + abs(nw + sw - 2.0 * w);
     float vertical = 2.0 * abs(e + w - 2.0 * m) + abs(ne + nw - 2.0 * n) + abs(se + sw - 2.0 * s);
-    bool is_horizontal = horizontal >= vertical;
+    // A pixel that stands out alone gives the same sum both ways: the bias lets no rounding decide.
+    bool is_horizontal = horizontal + TIE >= vertical;
 
     // The edge lies on the side of the steeper step.
     float ahead = is_horizontal ? n : e;

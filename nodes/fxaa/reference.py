@@ -82,7 +82,7 @@ def _shift(luma: F64, x: int, y: int, settings: Settings) -> tuple[float, tuple[
 
     bend = np.array([1.0, -2.0, 1.0])
     line = np.array([1.0, 2.0, 1.0])
-    horizontal = float(line @ np.abs(bend @ block)) >= float(line @ np.abs(block @ bend))
+    horizontal = float(line @ np.abs(bend @ block)) + 1 / 4096 >= float(line @ np.abs(block @ bend))
     behind, ahead = (block[0, 1], block[2, 1]) if horizontal else (block[1, 0], block[1, 2])
     side, other = (1, ahead) if abs(ahead - middle) >= abs(behind - middle) else (-1, behind)
     across = (0, side) if horizontal else (side, 0)

@@ -21,9 +21,17 @@ _PEREZ = {
 }
 #: Rows: turbidity squared, turbidity, one; columns: theta cubed, squared, theta, one.
 _ZENITH = {
-    "x": [(0.00166, -0.00375, 0.00209, 0.0), (-0.02903, 0.06377, -0.03202, 0.00394), (0.11693, -0.21196, 0.06052, 0.25886)],
-    "y": [(0.00275, -0.00610, 0.00317, 0.0), (-0.04214, 0.08970, -0.04153, 0.00516), (0.15346, -0.26756, 0.06670, 0.26688)],
-}  # fmt: skip
+    "x": [
+        (0.00166, -0.00375, 0.00209, 0.0),
+        (-0.02903, 0.06377, -0.03202, 0.00394),
+        (0.11693, -0.21196, 0.06052, 0.25886),
+    ],
+    "y": [
+        (0.00275, -0.00610, 0.00317, 0.0),
+        (-0.04214, 0.08970, -0.04153, 0.00516),
+        (0.15346, -0.26756, 0.06670, 0.26688),
+    ],
+}
 _XYZ_OF_RGB = np.array(
     [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
 )
@@ -77,8 +85,10 @@ def sky(
     horizon: float = 0.02,
     pixel: float = 1e-3,
 ) -> F64:
-    """Radiance of unit ``directions``, ``float64[..., 3]``. No ``turbidity``: the gradient. ``sun_radius`` and
-    ``pixel`` (the angle over which the disc's edge is smoothed) in radians."""
+    """Radiance of unit ``directions``, ``float64[..., 3]``. No ``turbidity``: the gradient.
+
+    ``sun_radius`` and ``pixel``, the angle over which the disc's edge is smoothed, are in radians.
+    """
     sun, irradiance = np.array(light.sun), np.array(light.irradiance)
     above = np.broadcast_to(np.array(light.ambient_sky), directions.shape)
     disc = np.zeros_like(directions)

@@ -337,6 +337,60 @@ MESSAGES: Final[dict[str, Message]] = {
         "this is a defect of the node, not of the graph; please report it with the graph file",
         "The node's build() failed, or declared sub-passes that contradict its ports.",
     ),
+    "RG230": Message(
+        "error",
+        "'{first}' and '{second}' both write '{resource}', and nothing says which comes first",
+        "add `after: [{first}]` to '{second}' (or the other way round); '{first}' is at {place}",
+        "Passes may be listed in any order, so the file's order decides nothing. The pass that replaces the whole content "
+        "comes first by itself; of two that add to it, or two that replace it, one needs `after:` or must read something "
+        "that depends on the other.",
+    ),
+    "RG231": Message(
+        "error",
+        "'{name}' reads '{resource}', which no pass writes",
+        "write '{resource}' in some pass, or read another resource",
+        "A transient resource holds nothing at the start of a frame. Last frame's content is a resource of its own, "
+        "declared with `previous:`.",
+    ),
+    "RG232": Message(
+        "error",
+        "'{name}' adds to '{resource}' before anything gave it content",
+        "write all of '{resource}' first, for example with a `clear` pass",
+        "Blending, depth testing against loaded depth, atomics and partial stores keep what was there. Some pass must "
+        "first define it; '{name}' itself cannot.",
+    ),
+    "RG233": Message(
+        "error",
+        "passes wait for each other in a circle: {path}",
+        "break it: read last frame's content through a resource with `previous:`, or drop an `after:`; {steps}",
+        "Each arrow reads 'must run before'. A pass is one unit here, even when its sub-passes could be interleaved. "
+        "Places: see the positions of the passes named.",
+    ),
+    "RG234": Message(
+        "error",
+        "the output '{resource}' is written by no pass",
+        "write '{resource}' in some pass, or remove it from outputs:",
+    ),
+    "RG235": Message(
+        "error",
+        "'{resource}' is the history of '{source}', which no pass writes",
+        "write '{source}' in some pass, or remove '{resource}'",
+    ),
+    "RG236": Message(
+        "error",
+        "'{name}' writes '{resource}', which is {kind} and can only be read",
+        "write another resource; a history changes by writing the resource it is the history of",
+    ),
+    "RG237": Message(
+        "error",
+        "'{name}' must run before '{resource}' has content",
+        "remove the `after:` that puts '{name}' before the first writer of '{resource}'",
+    ),
+    "RG239": Message(
+        "note",
+        "'{name}' does not run: nothing it writes reaches an output",
+        "read its result, name it under outputs:, or set `keep: true`; `rg explain` tells who would have read it",
+    ),
     # ---- RG3xx: resources and formats
     "RG301": Message(
         "error",
@@ -446,6 +500,31 @@ MESSAGES: Final[dict[str, Message]] = {
     ),
     "RG330": Message("error", "output '{resource}': {problem}", "{hint}"),
     # ---- RG4xx: barriers
+    "RG401": Message(
+        "error",
+        "missing barrier: '{before}' uses '{resource}' after '{after}', with no {kind} barrier between them",
+        "add `- {{resource: {resource}, after: {after}, before: {before}, kind: {kind}}}` to barriers:, or remove the "
+        "section to have all barriers derived",
+        "One of the two accesses is a shader store or atomic, which OpenGL does not order by itself (4.5 core, 7.13.2). "
+        "The kind names how the resource is used next.",
+    ),
+    "RG402": Message(
+        "warning",
+        "redundant barrier: nothing calls for one on '{resource}' between '{after}' and '{before}'",
+        "remove it",
+        "OpenGL orders drawing, sampling, copies and clears by itself; only shader stores and atomics need barriers.",
+    ),
+    "RG403": Message(
+        "warning",
+        "barrier of the wrong kind: '{before}' needs {needed} on '{resource}' after '{after}', not {kind}",
+        "state {needed} in place of {kind}",
+        "A bit of glMemoryBarrier names how memory is used after it, not how it was written.",
+    ),
+    "RG404": Message(
+        "note",
+        "barrier on '{resource}' between '{after}' and '{before}': '{gone}' does not run",
+        "nothing to do; it applies again when '{gone}' runs",
+    ),
     # ---- RG5xx: the device, programs, files written
     "RG500": Message(
         "error",

@@ -54,7 +54,9 @@ class Model(BaseModel):
 class FrameModel(Model):
     """The frame: size, how many, seed, depth convention."""
 
-    size: tuple[Extent, Extent] = Field((1280, 720), description="Width and height of the frame in pixels.")
+    size: tuple[Extent, Extent] = Field(
+        (1280, 720), description="Width and height of the frame.", json_schema_extra={"unit": "pixels"}
+    )
     count: int = Field(1, ge=1, le=MAX_FRAMES, description="Frames to render.")
     seed: int = Field(0, ge=0, le=2**32 - 1, description="Seed of everything random in the graph.")
     depth: Literal["reversed", "standard"] = Field(
@@ -73,12 +75,14 @@ class CameraModel(Model):
     """A perspective camera: placed by position and target, or taken from the scene file by name."""
 
     name: str | None = Field(None, description="A camera of the scene file, by node or camera name.")
-    position: Vec3 | None = Field(None, description="Eye position in metres.")
-    target: Vec3 | None = Field(None, description="Point looked at, in metres.")
+    position: Vec3 | None = Field(None, description="Where the eye is.", json_schema_extra={"unit": "m"})
+    target: Vec3 | None = Field(None, description="Point looked at.", json_schema_extra={"unit": "m"})
     up: Vec3 = Field((0.0, 1.0, 0.0), description="Up direction.")
-    fov: float = Field(60.0, gt=0, lt=180, description="Vertical field of view in degrees.")
-    near: float = Field(0.05, gt=0, description="Near plane distance in metres.")
-    far: float | None = Field(None, gt=0, description="Far plane distance in metres; none for infinity.")
+    fov: float = Field(60.0, gt=0, lt=180, description="Vertical field of view.", json_schema_extra={"unit": "degrees"})
+    near: float = Field(0.05, gt=0, description="Near plane distance.", json_schema_extra={"unit": "m"})
+    far: float | None = Field(
+        None, gt=0, description="Far plane distance; none for infinity.", json_schema_extra={"unit": "m"}
+    )
     orbit: OrbitModel | None = Field(None, description="Move on a circle around the target.")
 
     @model_validator(mode="after")
@@ -122,25 +126,35 @@ class PointsModel(Model):
     count: int = Field(..., ge=0, le=65536, description="Number of lights.")
     seed: int = Field(0, ge=0, le=2**32 - 1, description="Seed of positions and colours.")
     intensity: NonNegative = Field(1.0, description="Radiant intensity of each light.")
-    radius: float | None = Field(None, gt=0, description="Reach in metres; none: where the light falls below `cutoff`.")
+    radius: float | None = Field(
+        None, gt=0, description="Reach; none: where the light falls below `cutoff`.", json_schema_extra={"unit": "m"}
+    )
     cutoff: float = Field(0.02, gt=0, description="Irradiance below which a light without `radius` ends.")
 
 
 class PointModel(Model):
     """One point light."""
 
-    position: Vec3 = Field(..., description="Position in metres.")
+    position: Vec3 = Field(..., description="Position.", json_schema_extra={"unit": "m"})
     color: Rgb = Field((1.0, 1.0, 1.0), description="Linear colour.")
     intensity: NonNegative = Field(1.0, description="Radiant intensity.")
-    radius: float = Field(5.0, gt=0, description="Reach in metres: exactly dark beyond.")
+    radius: float = Field(5.0, gt=0, description="Reach: exactly dark beyond.", json_schema_extra={"unit": "m"})
 
 
 class SpotModel(PointModel):
     """One spot light."""
 
     direction: Direction = Field((0.0, -1.0, 0.0), description="Axis of the cone.")
-    inner: float = Field(20.0, ge=0, lt=90, description="Half angle of full brightness, in degrees.")
-    outer: float = Field(30.0, gt=0, lt=90, description="Half angle beyond which it is exactly dark, in degrees.")
+    inner: float = Field(
+        20.0, ge=0, lt=90, description="Half angle of full brightness.", json_schema_extra={"unit": "degrees"}
+    )
+    outer: float = Field(
+        30.0,
+        gt=0,
+        lt=90,
+        description="Half angle beyond which it is exactly dark.",
+        json_schema_extra={"unit": "degrees"},
+    )
 
     @model_validator(mode="after")
     def _cone(self) -> SpotModel:
@@ -207,11 +221,15 @@ class ResourceModel(Model):
     format: FormatName | None = Field(None, description="Texture format.")
     scale: float | None = Field(None, gt=0, le=16, description="Size as a multiple of the frame's, or of `like`'s.")
     like: Name | None = Field(None, description="Another texture whose size (and format, unless given) this one has.")
-    fixed: tuple[Extent, Extent] | None = Field(None, description="Size in texels, whatever the frame's.")
+    fixed: tuple[Extent, Extent] | None = Field(
+        None, description="Size, whatever the frame's.", json_schema_extra={"unit": "texels"}
+    )
     layers: int = Field(1, ge=1, le=2048, description="Array layers.")
     mips: int = Field(1, ge=0, le=15, description="Mip levels; 0 for the whole chain.")
     samples: Literal[1, 2, 4, 8] = Field(1, description="Samples a texel.")
-    bytes: int | None = Field(None, ge=4, le=2**31 - 1, multiple_of=4, description="Size of a buffer in bytes.")
+    bytes: int | None = Field(
+        None, ge=4, le=2**31 - 1, multiple_of=4, description="Size of a buffer.", json_schema_extra={"unit": "bytes"}
+    )
     previous: Name | None = Field(None, description="The resource whose last frame's content this is.")
     file: str | None = Field(None, min_length=1, description="An image file (.png, .jpg, .hdr) relative to this file.")
 
@@ -284,8 +302,10 @@ class OutputModel(Model):
 class BudgetModel(Model):
     """Limits that fail the run."""
 
-    frame_ms: float | None = Field(None, gt=0, description="Time of a frame in milliseconds.")
-    transient_mib: float | None = Field(None, gt=0, description="Memory of transient resources in MiB.")
+    frame_ms: float | None = Field(None, gt=0, description="Time of a frame.", json_schema_extra={"unit": "ms"})
+    transient_mib: float | None = Field(
+        None, gt=0, description="Memory of transient resources.", json_schema_extra={"unit": "MiB"}
+    )
     draws: int | None = Field(None, ge=0, description="Draw calls a frame.")
     flip: float | None = Field(None, ge=0, le=1, description="Mean FLIP error of the image against its reference.")
 
@@ -303,7 +323,9 @@ class DocumentModel(Model):
         None, description="Barriers by the author, checked against the derived ones; without this key all are derived."
     )
     outputs: dict[ResourceName, OutputModel] = Field(..., min_length=1, description="Resources written to files.")
-    budget: BudgetModel = Field(default_factory=lambda: BudgetModel(), description="Limits that fail the run.")
+    budget: BudgetModel = Field(
+        default_factory=lambda: BudgetModel(), description="Limits; a run that exceeds one fails."
+    )
 
     @model_validator(mode="after")
     def _distinct_files(self) -> DocumentModel:

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
+from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue, models_json_schema
 from pydantic_core import core_schema
 
@@ -31,7 +32,7 @@ def shipped_nodes() -> tuple[str, ...]:
 def json_schema(nodes: Iterable[str] | None = None) -> dict[str, Any]:
     """The schema with the ports and parameters of ``nodes``; by default of all nodes found, shipped or installed."""
     found = [find_node(name) for name in sorted(node_names() if nodes is None else nodes)]
-    models = dict.fromkeys([DocumentModel, *(node.params_type for node in found)])
+    models: dict[type[BaseModel], None] = dict.fromkeys([DocumentModel, *(node.params_type for node in found)])
     references, combined = models_json_schema(
         [(model, "validation") for model in models], ref_template=_REFERENCE, schema_generator=_Generator
     )
@@ -66,6 +67,8 @@ def _describe_passes(
 ) -> None:
     """Names the nodes, and says for each what its ``read``, ``write`` and ``set`` hold."""
     nodes = list(nodes)
+    if not nodes:
+        return
     schema["properties"]["node"] |= {
         "enum": [node.name for node in nodes],
         "enumDescriptions": [node.summary() for node in nodes],
@@ -110,7 +113,7 @@ def _port_help(port: Port) -> str:
 
 
 def _draft_07(schema: Any, *, named: bool = False) -> Any:
-    """pydantic's 2020-12 schema in draft-07's words. ``named``: the keys are names of properties, not keywords."""
+    """Pydantic's 2020-12 schema in draft-07's words. ``named``: the keys are names of properties, not keywords."""
     if isinstance(schema, list):
         return [_draft_07(item) for item in schema]
     if not isinstance(schema, dict):
@@ -118,7 +121,9 @@ def _draft_07(schema: Any, *, named: bool = False) -> Any:
     if named:
         return {name: _draft_07(value) for name, value in schema.items()}
     kept = {
-        key: value if key in ("default", "enum", "const") else _draft_07(value, named=key.endswith("roperties"))
+        key: value
+        if key in ("default", "enum", "const")
+        else _draft_07(value, named=key in ("properties", "patternProperties"))
         for key, value in schema.items()
         if key != "title" and not (key == "default" and value is None)
     }

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Final
 
 import yaml
@@ -274,6 +275,7 @@ class _Reader:
         return _Stop(diagnose(code, to_position(self.file, mark), **data))
 
 
+@lru_cache(4096)  # keys repeat from pass to pass
 def _is_text(key: str) -> bool:
     try:
         return type(resolve(key)) is str
@@ -297,7 +299,8 @@ def _syntax(error: yaml.MarkedYAMLError, data: bytes, file: str) -> Diagnostic:
     elif "mapping values are not allowed" in problem:
         hint = "quote text that holds a colon, or check the indentation of this and the line above"
     elif "expected ',' or" in problem:
-        hint = "a bracket is not closed, or a comma is missing, before this place"
+        opened = f"opened in line {error.context_mark.line + 1} " if error.context_mark else ""
+        hint = f"the bracket {opened}is not closed, or a comma is missing, before this place"
     return diagnose("RG104", position, problem=problem, hint=hint)
 
 

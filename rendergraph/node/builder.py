@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -253,8 +254,8 @@ class Builder:
 
     def _shader(self, file: str, user: bool) -> Path:
         if file.startswith("<"):
-            return SHADERS / file.strip("<>")
-        return (self.graph_folder if user else self.node_folder) / file
+            return _joined(SHADERS, file.strip("<>"))
+        return _joined(self.graph_folder if user else self.node_folder, file)
 
     # ---- sub-passes
 
@@ -277,7 +278,7 @@ class Builder:
         work = work or Fullscreen()
         state = state or State()
         if isinstance(work, Fullscreen) and not any(stage == "vertex" for stage, _ in program.stages):
-            program = replace(program, stages=(*program.stages, ("vertex", SHADERS / "fullscreen.vert")))
+            program = replace(program, stages=(*program.stages, ("vertex", _joined(SHADERS, "fullscreen.vert"))))
         accesses = [_attach(a, Usage.COLOR) for a in color]
         clears = {a.resource: a.clear for a in color if a.clear is not None}
         if depth is not None:
@@ -354,6 +355,12 @@ _SUFFIX = {
 }  # fmt: skip
 
 
+@cache  # paths are slow to make, and many passes share a shader
+def _joined(folder: Path, file: str) -> Path:
+    return folder / file
+
+
+@cache
 def _stage(file: str) -> str:
     suffix = Path(file.strip("<>")).suffix
     if suffix not in _SUFFIX:

@@ -34,6 +34,7 @@ class PassBuilder:
     resources: Mapping[str, Resource | None] = field(default_factory=dict)  # None: wrong, and reported
     internal: dict[str, dict[str, Resource]] = field(default_factory=dict)  # nodes' own targets, by pass
     passes: dict[str, Pass] = field(default_factory=dict)
+    files: dict[str, str | None] = field(default_factory=dict)  # what is wrong with each file named
     cause: Exception | None = None  # of the first internal error: its traceback is for the node's author
 
     def make_nodes(self) -> dict[str, Node[Any]]:
@@ -69,7 +70,7 @@ class PassBuilder:
     def _expand_pass(self, name: str, node: Node[Any]) -> None:
         model, findings = self.findings.document.model.passes[name], self.findings
         before = len(findings.errors)
-        check_files(name, node.params, findings)
+        check_files(name, node.params, self.files, findings)
         self._check_after(name)
         found = Connections(self._connect(name, "read", model.read), self._connect(name, "write", model.write))
         check_ports(name, node, found, findings)

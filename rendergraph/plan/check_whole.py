@@ -12,17 +12,16 @@ from rendergraph.plan.graph import BarrierIntent, BufferDesc, Kind, Pass, Resour
 from rendergraph.plan.graph_files import locate, named_files
 
 
-def check_files(name: str, params: Params, findings: Findings) -> None:
-    """Report parameters of pass ``name`` that name a file outside the graph's folder, or none."""
+def check_files(name: str, params: Params, known: dict[str, str | None], findings: Findings) -> None:
+    """Report parameters of pass ``name`` that name a file outside the graph's folder, or none.
+
+    ``known`` remembers what is wrong with each file (``None``: nothing), as passes share shaders.
+    """
     for field, file in named_files(params):
-        path = locate(findings.folder, file)
-        if path is None:
-            problem = "lies outside the graph's folder"
-        elif path.is_dir():
-            problem = "is a folder"
-        elif not path.is_file():
-            problem = "does not exist"
-        else:
+        if file not in known:
+            known[file] = _file_problem(findings, file)
+        problem = known[file]
+        if problem is None:
             continue
         values: dict[str, Any] = {
             "name": name,
@@ -32,6 +31,15 @@ def check_files(name: str, params: Params, findings: Findings) -> None:
             "folder": findings.folder,
         }
         findings.add("RG222", "passes", name, "set", field, **values)
+
+
+def _file_problem(findings: Findings, file: str) -> str | None:
+    path = locate(findings.folder, file)
+    if path is None:
+        return "lies outside the graph's folder"
+    if path.is_dir():
+        return "is a folder"
+    return None if path.is_file() else "does not exist"
 
 
 def check_use(findings: Findings, resources: Mapping[str, Resource | None]) -> set[str]:

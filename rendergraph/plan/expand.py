@@ -101,5 +101,5 @@ def _graph(findings: Findings, frame: Frame, builder: PassBuilder) -> Graph:
         tuple(sorted(model.outputs)),
         barrier_intents(findings, {**builder.resources, **internal}, builder.passes),
         builder.features,
-        tuple(sorted(builder.decisions, key=lambda d: (d.kind, d.subject, d.reason, str(d.evidence)))),
+        tuple(sorted(builder.decisions, key=lambda d: (d.kind, d.subject, d.reason))),
     )

@@ -13,10 +13,10 @@ from rendergraph.node.params import Params
 
 
 def locate(folder: Path, name: str) -> Path | None:
-    """The file's path when it stays inside ``folder`` (symbolic links followed), else ``None``."""
+    """The file's path when it stays inside the resolved ``folder`` (symbolic links followed), else ``None``."""
     try:
         found = (folder / name).resolve()
-        return found if found.is_relative_to(folder.resolve()) else None
+        return found if found.is_relative_to(folder) else None
     except (OSError, ValueError):  # a name with a NUL, or a loop of links
         return None
 

@@ -7,10 +7,10 @@ split into cells as far as accesses tell mips, layers or byte ranges apart.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from rendergraph.plan.graph import BufferDesc, CopyTexture, Graph, SubPass, Usage
+from rendergraph.plan.graph import Access, BufferDesc, CopyTexture, Graph, SubPass, Usage
 from rendergraph.plan.index import Grid
 from rendergraph.plan.plan import BufferRange
 
@@ -47,76 +47,126 @@ class Touch:
     feedback: bool
 
 
+Home = tuple[str, str | int]  # ("slot", number), ("heap", 0) or ("own", resource)
+
+
 @dataclass(slots=True)
 class CellHistory:
-    """The touches of one cell over ``frames`` frames, after which they repeat: one list a frame, ascending. More than
-    one frame when the storage is swapped with its history."""
+    """The touches of one cell, ascending, one list a frame; after the last frame they begin again. More frames than
+    one when the storage is swapped with its history: it is this frame's, then last frame's."""
 
-    frames: int
-    touches: list[list[Touch]]
-
-
-Cell = tuple[object, int]  # storage, cell within it
+    frames: list[list[Touch]]
 
 
 def cell_histories(
     graph: Graph, order: Sequence[SubPass], slot_of: Mapping[str, int], buffer_of: Mapping[str, BufferRange]
-) -> Iterator[CellHistory]:
-    """Histories of the cells that could need a barrier: stored to by a shader, or sampled while rendered to."""
-    hot, narrowed = _survey(order)
+) -> list[CellHistory]:
+    """Histories of the cells that could need a barrier: those a shader stores to, or a draw both samples and renders."""
+    hot, chosen_by_resource = _survey(order)
     if not hot:
-        return
-    roots = {name: _root(graph, name) for name in graph.resources}
-    frames: dict[str, int] = {}
-    for root, age in roots.values():
-        frames[root] = max(frames.get(root, 1), age + 1)
-    ranges = _Ranges(buffer_of)
+        return []
+    homes: dict[str, tuple[Home, int]] = {}
+    frames: dict[Home, int] = {}
+    for name in graph.resources:
+        home, age = homes[name] = _home(graph, name, slot_of, buffer_of)
+        frames[home] = max(frames.get(home, 1), age + 1)
+    chosen: dict[Home, set[tuple[int | None, int | None]]] = {}
+    for name, choices in chosen_by_resource.items():
+        chosen.setdefault(homes[name][0], set()).update(choices)
+    hot_homes = {homes[name][0] for name in hot}
+    ranges = _split_heap(buffer_of)
+    hot_ranges = {cell for name in hot if name in ranges for cell in ranges[name]}
 
-    def storage(name: str) -> object:
-        return slot_of.get(name, roots[name][0])
-
-    grids: dict[object, Grid] = {}
-    chosen: dict[object, set[tuple[int | None, int | None]]] = {}
-    for name, choices in narrowed.items():
-        chosen.setdefault(storage(name), set()).update(choices)
-    hot_storage = {storage(name) for name in hot}
-    hot_ranges = {cell for name in hot if name in buffer_of for cell in ranges.cells(name)}
-    cells: dict[Cell, CellHistory] = {}
+    grids: dict[Home, Grid] = {}
+    cells: dict[tuple[Home, int], CellHistory] = {}
     for position, subpass in enumerate(order):
         loops = feedback(subpass)
         for access in subpass.accesses:
             name = access.resource
-            found: Iterable[int]
-            if name in buffer_of:
-                home: object = "heap"  # no resource is an int or in the heap without being in buffer_of
-                found = [cell for cell in ranges.cells(name) if cell in hot_ranges]
+            home, age = homes[name]
+            if home not in hot_homes:
+                continue
+            touched: Iterable[int]
+            if name in ranges:
+                touched = [cell for cell in ranges[name] if cell in hot_ranges]
             else:
-                home = storage(name)
-                if home not in hot_storage:
-                    continue
                 grid = grids.get(home)
                 if grid is None:
                     grid = grids[home] = Grid(graph.resources[name].desc, chosen.get(home, ()))
-                found = grid.cells(access.mip, access.layer)
-            if not found:
-                continue
-            usage = access.usage
-            touch = Touch(
-                position,
-                name,
-                _kind(graph, subpass, name, usage),
-                usage.writes,
-                access.load or not usage.writes,
-                usage.incoherent,
-                usage is Usage.COLOR or usage is Usage.DEPTH,
-                usage is Usage.SAMPLED and name in loops,
-            )
-            root, age = roots[name]
-            for cell in found:
-                key = (home, cell) if name in buffer_of else ((home, root), cell)
-                history = cells.get(key)
+                touched = grid.cells(access.mip, access.layer)
+            touch = _touch(graph, position, subpass, access, access in loops)
+            for cell in touched:
+                history = cells.get((home, cell))
                 if history is None:
-                    period = frames[root] if home == root else 1
-                    history = cells[key] = CellHistory(period, [[] for _ in range(period)])
-                history.touches[age].append(touch)
-    yield from cells.values()
+                    history = cells[home, cell] = CellHistory([[] for _ in range(frames[home])])
+                history.frames[age].append(touch)
+    return list(cells.values())
+
+
+def feedback(subpass: SubPass) -> list[Access]:
+    """The accesses by which a draw samples texels that it also renders to."""
+    targets = [a for a in subpass.accesses if a.usage is Usage.COLOR or a.usage is Usage.DEPTH]
+    if not targets:
+        return []
+    names = {a.resource for a in targets}
+    return [
+        a
+        for a in subpass.accesses
+        if a.usage is Usage.SAMPLED
+        and a.resource in names
+        and any(t.resource == a.resource and _meet(t.mip, a.mip) and _meet(t.layer, a.layer) for t in targets)
+    ]
+
+
+def _meet(a: int | None, b: int | None) -> bool:
+    return a is None or b is None or a == b
+
+
+def _survey(order: Sequence[SubPass]) -> tuple[set[str], dict[str, set[tuple[int | None, int | None]]]]:
+    """Resources that shaders store to or draws feed back on, and the mips and layers named anywhere."""
+    hot: set[str] = set()
+    chosen: dict[str, set[tuple[int | None, int | None]]] = {}
+    for subpass in order:
+        for access in subpass.accesses:
+            if access.usage.incoherent:
+                hot.add(access.resource)
+            if access.mip is not None or access.layer is not None:
+                chosen.setdefault(access.resource, set()).add((access.mip, access.layer))
+        hot.update(access.resource for access in feedback(subpass))
+    return hot, chosen
+
+
+def _home(
+    graph: Graph, name: str, slot_of: Mapping[str, int], buffer_of: Mapping[str, BufferRange]
+) -> tuple[Home, int]:
+    """Where a resource lives, and how many frames ago its content was made."""
+    if name in slot_of:
+        return ("slot", slot_of[name]), 0
+    if name in buffer_of:
+        return ("heap", 0), 0
+    age = 0
+    while (source := graph.resources[name].previous_of) is not None:
+        name, age = source, age + 1
+    return ("own", name), age
+
+
+def _split_heap(buffer_of: Mapping[str, BufferRange]) -> dict[str, range]:
+    """Cut the heap at every start and end of a buffer: each buffer is then a run of whole pieces."""
+    cuts = sorted({edge for b in buffer_of.values() for edge in (b.offset, b.offset + b.bytes)})
+    return {
+        name: range(bisect_left(cuts, b.offset), bisect_left(cuts, b.offset + b.bytes))
+        for name, b in buffer_of.items()
+    }
+
+
+def _touch(graph: Graph, position: int, subpass: SubPass, access: Access, loops: bool) -> Touch:
+    usage = access.usage
+    kind = _KIND.get(usage.value)
+    if kind is None:  # copies, clears and reads by the host
+        if isinstance(graph.resources[access.resource].desc, BufferDesc):
+            kind = "buffer_update"
+        else:  # a blit goes through framebuffers, a plain copy does not
+            kind = "framebuffer" if isinstance(subpass.work, CopyTexture) and subpass.work.blit else "texture_update"
+    attachment = usage is Usage.COLOR or usage is Usage.DEPTH
+    loads = access.load or not usage.writes
+    return Touch(position, access.resource, kind, usage.writes, loads, usage.incoherent, attachment, loops)

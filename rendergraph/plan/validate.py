@@ -16,7 +16,7 @@ def plan_without_scene(document: Document, options: PlanOptions) -> tuple[Plan, 
     """Plan a document as if its scene held every feature: the largest graph it can become."""
     graph, warnings = expand(document)
     plan, more = compile_plan(graph, options)
-    return plan, (*warnings, *more)
+    return plan, (*document.warnings, *warnings, *more)
 
 
 def validate_graph(path: str | Path, overrides: Sequence[str] = ()) -> tuple[tuple[Diagnostic, ...], int]:

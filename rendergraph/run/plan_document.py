@@ -6,6 +6,7 @@ import time
 from dataclasses import dataclass, replace
 
 from rendergraph.document.load import Document
+from rendergraph.document.overrides import SET_PREFIX
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.plan.compile import compile_plan
 from rendergraph.plan.expand import expand
@@ -69,4 +70,7 @@ def _load(document: Document, source: str | None) -> LoadedScene | None:
         source_override=source,
         position=document.position("scene", "source") if source is None else None,
         camera_position=document.position("scene", "camera"),
+        keep_camera=any(
+            document.position("scene", "camera", key).file.startswith(SET_PREFIX) for key in ("position", "target", "name")
+        ),
     )

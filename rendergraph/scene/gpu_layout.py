@@ -6,15 +6,24 @@ import math
 
 import numpy as np
 
-from rendergraph.scene.draw_queues import DRAW_COMMAND, QUEUES, DrawRun, draw_runs
 from rendergraph.scene.scene import F64, Alpha, Material, Scene, TextureUse
 from rendergraph.scene.texture_arrays import TextureArrayLayers, TexturePlacement, place_textures
 
 __all__ = [
-    "DRAW_COMMAND", "DrawRun", "INSTANCE", "LIGHT", "MATERIAL", "NO_TEXTURE", "QUEUES", "TEXTURE_REF",
-    "TextureArrayLayers", "TexturePlacement", "draw_runs", "normal_matrix", "pack_instances", "pack_lights",
-    "pack_materials", "place_textures",
-]  # fmt: skip
+    "INSTANCE",
+    "LIGHT",
+    "MATERIAL",
+    "NO_TEXTURE",
+    "TEXTURE_REF",
+    "TextureArrayLayers",
+    "TexturePlacement",
+    "mirrored",
+    "normal_matrix",
+    "pack_instances",
+    "pack_lights",
+    "pack_materials",
+    "place_textures",
+]
 
 _VEC4 = (np.float32, (4,))
 

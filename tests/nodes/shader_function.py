@@ -14,6 +14,8 @@ from rendergraph.device.context import Device
 from rendergraph.device.programs import compile_program
 from rendergraph.plan.graph import Program
 
+BUFFER_UPDATE_BARRIER_BIT = 0x200
+
 F32 = npt.NDArray[np.float32]
 
 _SHADER = """\
@@ -76,7 +78,7 @@ def run_shader_function(
             device.gl.glBindBufferRange(target, block.binding, data[name].glo, 0, data[name].bytes)
     device.gl.glUseProgram(program.glo)
     device.gl.glDispatchCompute(-(-len(rows) // 64), 1, 1)
-    device.gl.glMemoryBarrier(enums.BUFFER_UPDATE_BARRIER_BIT)
+    device.gl.glMemoryBarrier(BUFFER_UPDATE_BARRIER_BIT)
     result = np.frombuffer(read_buffer(device, output), dtype=np.float32).reshape(len(rows), results)
     for buffer in data.values():
         destroy_buffer(device, buffer)
