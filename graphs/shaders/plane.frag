@@ -12,7 +12,7 @@ void main() {
     float aspect = frame.viewport.x * frame.viewport.w;
     float below = 0.72 - v_uv.y;                       // under the horizon
     float distance = 0.35 / max(below, 1e-4);          // of the plane's point, for an eye 0.35 above it
-    vec2 plane = vec2((v_uv.x - 0.5) * aspect * distance / 0.35 * 0.35, distance);
+    vec2 plane = vec2((v_uv.x - 0.5) * aspect * distance, distance);
     vec3 bare = textureLod(u_tiles, plane, 0.0).rgb;
     vec3 mipped = texture(u_pyramid, plane).rgb;
     vec3 sky = mix(vec3(0.75, 0.83, 0.92), vec3(0.30, 0.50, 0.80), clamp((v_uv.y - 0.72) / 0.28, 0.0, 1.0));

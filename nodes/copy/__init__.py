@@ -10,6 +10,7 @@ from rendergraph.node.user_shader import misuse
 from rendergraph.plan.graph import BufferDesc, TextureDesc
 
 ANY_SAMPLES = (1, 2, 4, 8)
+ANY_FORMAT = ("rgba8", *sorted(FORMATS.keys() - {"rgba8"}))
 
 
 class CopyParams(Params):
@@ -26,14 +27,8 @@ class Copy(Node[CopyParams]):
     Without ``blit`` sizes are equal and formats belong to one view class (GL 4.5, table 8.22), and bits are kept.
     """
 
-    inputs = {
-        "source": Port("What is copied.", formats=tuple(FORMATS), buffer=True, samples=ANY_SAMPLES, layers=None),
-    }
-    outputs = {
-        "destination": Port(
-            "Where it goes.", formats=("rgba8", *sorted(FORMATS.keys() - {"rgba8"})), buffer=True, samples=ANY_SAMPLES, layers=None
-        ),
-    }  # fmt: skip
+    inputs = {"source": Port("What is copied.", ANY_FORMAT, buffer=True, samples=ANY_SAMPLES, layers=None)}
+    outputs = {"destination": Port("Where it goes.", ANY_FORMAT, buffer=True, samples=ANY_SAMPLES, layers=None)}
     exact = True
 
     def build(self, b: Builder) -> None:

@@ -20,6 +20,12 @@ MIN_NOV = 1e-4
 DIELECTRIC_F0 = 0.04
 MAX_RADIANCE = 65504.0
 
+# Quotients of quadratics in NoV (x) and roughness (r); terms 1, x, r, xr, xx, rr, xxr, xrr.
+_A_ABOVE = np.array([-0.069, 3.392, 1.849, -20.789, 39.548, 0.031, -39.706, 19.731])
+_A_BELOW = np.array([1.0, 4.867, -0.626, -25.981, 35.452, 1.719, -28.935, 26.371])
+_B_ABOVE = np.array([1.029, 0.489, -0.071, -2.120, -2.407, -0.650, 2.220, 2.379])
+_B_BELOW = np.array([1.0, 3.994, 2.312, -57.420, 45.577, 7.051, -3.433, 158.247])
+
 
 def dot(a: F64, b: F64) -> F64:
     """Inner product over the last axis."""
@@ -111,13 +117,13 @@ def ambient(
 
 
 def environment_fit(nov: F64, roughness: F64, f0: F64) -> F64:
-    """The published fit of the specular lobe's directional albedo (Karis 2014), clamped to 0..1."""
-    x = 1.0 - roughness
-    a = np.minimum(x * x, 2.0 ** (-9.28 * nov)) * x + 0.0425 - 0.0275 * roughness
-    scale = -1.04 * a + 1.04 - 0.572 * roughness
-    bias = 1.04 * a - 0.04 + 0.022 * roughness
-    fitted: F64 = np.clip(f0 * scale[..., None] + bias[..., None], 0.0, 1.0)
-    return fitted
+    """The fit of the specular lobe's directional albedo that the shaders use; see :func:`directional_albedo`."""
+    x, r = np.broadcast_arrays(nov, roughness)
+    terms = np.stack([np.ones_like(x), x, r, x * r, x * x, r * r, x * x * r, x * r * r], axis=-1)
+    a = (terms @ _A_ABOVE) / (terms @ _A_BELOW)
+    b = (terms @ _B_ABOVE) / (terms @ _B_BELOW)
+    fitted: F64 = f0 * np.clip(a, 0.0, 1.0)[..., None] + np.clip(b, 0.0, 1.0)[..., None]
+    return np.minimum(fitted, 1.0)
 
 
 def directional_albedo(nov: float, roughness: float, f0: float, samples: int = 4096) -> float:

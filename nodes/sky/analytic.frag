@@ -18,7 +18,9 @@ const float CEILING = 64512.0;       // largest value that every floating-point 
 // Share of the pixel that the disc covers, its edge taken as straight within the pixel.
 float disc_coverage(vec3 direction, vec3 sun) {
     float pixel = 2.0 * frame.viewport.w / frame.projection[1][1];  // [rad] at the centre of the view
-    float angle = 2.0 * asin(min(0.5 * length(direction - sun), 1.0));
+    // By the chord, and the arcsine by its series: the cosine, and Mesa's asin(), lose digits at so small an angle.
+    float chord = length(direction - sun);
+    float angle = chord * (1.0 + chord * chord / 24.0);
     return clamp((u_sun_radius - angle) / pixel + 0.5, 0.0, 1.0);
 }
 

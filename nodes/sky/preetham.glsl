@@ -58,9 +58,8 @@ vec3 rec709(vec3 xyY) {
 // the horizon: directions and suns below it are taken as on it.
 vec3 preetham(vec3 direction, vec3 sun, float t) {
     Perez p = perez_coefficients(t);
-    float cos_sun = clamp(sun.y, 0.0, 1.0);
-    float theta = acos(cos_sun);
-    // The angle by its tangent: the cosine alone loses it near the sun.
+    // Angles by their tangents: the cosine alone loses a small one, and acos() is the least exact function of drivers.
+    float theta = atan(length(sun.xz), max(sun.y, 0.0));
     float gamma = atan(length(cross(direction, sun)), dot(direction, sun));
     vec3 ratio = perez(p, max(direction.y, 1.0e-3), gamma) / perez(p, 1.0, theta);
     return rec709(zenith(theta, t) * ratio);

@@ -1,40 +1,17 @@
-"""The clock of a renderer, chosen by proof: GPU timestamps where they agree with a fenced wall clock, else that one.
-
-llvmpipe's GL timers measure binning, not rasterising, and a dispatch runs before its first timestamp is taken; its
-timestamps are off by an order of magnitude for raster passes. So both kinds of load are timed both ways at start-up.
-"""
+"""The clock of a renderer, chosen by proof: GPU timestamps where they agree with a fenced wall clock, else that one."""
 
 from __future__ import annotations
 
-import ctypes
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final, Protocol
 
-from rendergraph.device import enums as e
+from rendergraph.device.clock_proof import ClockProof, prove_clock
 from rendergraph.device.context import Device
-from rendergraph.device.proof_loads import ProofLoads
+from rendergraph.device.timestamps import create_timestamp, read_available, read_timestamp
 
-#: How far two honest clocks may be apart: a share of the wall time, or a fixed time where that is larger.
-RELATIVE_TOLERANCE: Final = 0.25
-ABSOLUTE_TOLERANCE_NS: Final = 50_000
 #: Frames whose timestamps may be in flight before the oldest is waited for.
 RING: Final = 4
-_REPEATS: Final = 3
-_ENOUGH_BITS: Final = 36  # 68 s of nanoseconds
-
-
-@dataclass(frozen=True, slots=True)
-class ClockProof:
-    """Median nanoseconds of one raster and one compute load by both clocks, and why the clock was chosen."""
-
-    reason: str  # "agree" | "disagree" | "no_counter"
-    counter_bits: int
-    raster_wall_ns: int = 0
-    raster_timestamp_ns: int = 0
-    compute_wall_ns: int = 0
-    compute_timestamp_ns: int = 0
 
 
 class Clock(Protocol):
@@ -126,7 +103,7 @@ class TimestampClock:
         """Start pass ``index``."""
         queries = self._ring[self._frame % RING]
         while len(queries) < 2 * index + 2:
-            queries.append(_query(self.device))
+            queries.append(create_timestamp(self.device))
         self._cpu = time.process_time_ns()
         self._start = time.perf_counter_ns()
         self.device.gl.glQueryCounter(queries[2 * index], e.TIMESTAMP)
@@ -161,75 +138,9 @@ class TimestampClock:
         return [stamps[2 * i + 1] - stamps[2 * i] for i in range(count)]
 
 
-def _query(device: Device) -> int:
-    """A timestamp query; not counted, since it belongs to the measurement and not to the graph."""
-    name = device.gl.create("glCreateQueries", e.TIMESTAMP)
-    device.owned["glDeleteQueries", name] = "pass time"
-    return name
-
-
-def read_timestamp(device: Device, query: int) -> int:
-    """A timestamp in nanoseconds, waited for; 64 bits, since 32 wrap after 4.3 s."""
-    value = ctypes.c_uint64()
-    device.gl.glGetQueryObjectui64v(query, e.QUERY_RESULT, ctypes.byref(value))
-    return value.value
-
-
-def read_available(device: Device, query: int) -> bool:
-    """Whether a query's result is there."""
-    value = ctypes.c_int()
-    device.gl.glGetQueryObjectiv(query, e.QUERY_RESULT_AVAILABLE, ctypes.byref(value))
-    return bool(value.value)
-
-
 def choose_clock(device: Device) -> Clock:
     """The clock this renderer deserves, with its proof; proven once a device."""
     proof = device.clock_proof
     if proof is None:
         proof = device.clock_proof = prove_clock(device)
     return TimestampClock(device, proof) if proof.reason == "agree" else FinishWallClock(device, proof)
-
-
-def prove_clock(device: Device) -> ClockProof:
-    """Time a raster and a compute load by both clocks. What that makes is not counted: no graph asked for it."""
-    bits = ctypes.c_int()
-    device.gl.glGetQueryiv(e.TIMESTAMP, e.QUERY_COUNTER_BITS, ctypes.byref(bits))
-    if bits.value < _ENOUGH_BITS:
-        return ClockProof("no_counter", bits.value)
-    counted = device.counters.snapshot()
-    loads = ProofLoads(device)
-    try:
-        raster = _time_load(device, loads.raster)
-        compute = _time_load(device, loads.compute)
-    finally:
-        loads.release()
-        device.counters = counted
-    reason = "agree" if all(agree(*pair) for pair in (raster, compute)) else "disagree"
-    return ClockProof(reason, bits.value, *raster, *compute)
-
-
-def agree(wall_ns: int, timestamp_ns: int) -> bool:
-    """Whether two clocks tell the same time."""
-    return abs(wall_ns - timestamp_ns) <= max(RELATIVE_TOLERANCE * wall_ns, ABSOLUTE_TOLERANCE_NS)
-
-
-def _time_load(device: Device, load: Callable[[], None]) -> tuple[int, int]:
-    """Median wall and timestamp nanoseconds of a load, each measured with the other off."""
-    queries = [_query(device) for _ in range(2)]
-    load()
-    device.finish()
-    wall, stamps = [], []
-    for _ in range(_REPEATS):
-        start = time.perf_counter_ns()
-        load()
-        device.finish()
-        wall.append(time.perf_counter_ns() - start)
-        device.gl.glQueryCounter(queries[0], e.TIMESTAMP)
-        load()
-        device.gl.glQueryCounter(queries[1], e.TIMESTAMP)
-        device.finish()
-        first, last = (read_timestamp(device, query) for query in queries)
-        stamps.append(last - first)
-    for query in queries:
-        device.delete_object("glDeleteQueries", query)
-    return sorted(wall)[_REPEATS // 2], sorted(stamps)[_REPEATS // 2]

@@ -17,6 +17,7 @@ import moderngl
 from rendergraph.device import enums as e
 from rendergraph.device.debug import DebugLog, Scope
 from rendergraph.device.gl import GL
+from rendergraph.device.info import Counters, DeviceInfo, describe
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.plan.graph import Position
 
@@ -29,57 +30,7 @@ REQUIRED_VERSION: Final = 450
 REQUIRED_EXTENSIONS: Final = frozenset({
     "GL_ARB_shader_draw_parameters", "GL_ARB_indirect_parameters", "GL_ARB_shader_viewport_layer_array",
 })  # fmt: skip
-_LIMITS: Final = {
-    name: getattr(e, name.upper())
-    for name in (
-        "max_texture_size", "max_3d_texture_size", "max_cube_map_texture_size", "max_array_texture_layers",
-        "max_samples", "max_color_attachments", "max_combined_texture_image_units", "max_image_units",
-        "max_shader_storage_block_size", "max_shader_storage_buffer_bindings", "shader_storage_buffer_offset_alignment",
-        "max_uniform_block_size", "max_uniform_buffer_bindings", "uniform_buffer_offset_alignment",
-        "max_compute_shared_memory_size", "max_compute_work_group_invocations",
-    )
-}  # fmt: skip
-_SOFTWARE: Final = ("llvmpipe", "softpipe", "lavapipe", "swrast")
 _MOST_DEVICES: Final = 64
-
-
-@dataclass(frozen=True, slots=True)
-class DeviceInfo:
-    """What the driver says of itself. ``version`` is the context's as 450; ``driver`` the whole GL_VERSION string."""
-
-    index: int
-    renderer: str
-    vendor: str
-    version: int
-    driver: str
-    glsl: str
-    limits: dict[str, int]
-    extensions: frozenset[str]
-
-    @property
-    def is_software(self) -> bool:
-        """Whether a CPU rasteriser does the work."""
-        return self.renderer.lower().startswith(_SOFTWARE)
-
-
-@dataclass(slots=True)
-class Counters:
-    """What has been made or sent since the start; a steady frame adds nothing. Bytes are those handed to GL."""
-
-    objects_created: int = 0
-    programs_compiled: int = 0
-    bytes_uploaded: int = 0
-
-    def snapshot(self) -> Counters:
-        """A copy, to subtract later."""
-        return Counters(self.objects_created, self.programs_compiled, self.bytes_uploaded)
-
-    def __sub__(self, earlier: Counters) -> Counters:
-        return Counters(
-            self.objects_created - earlier.objects_created,
-            self.programs_compiled - earlier.programs_compiled,
-            self.bytes_uploaded - earlier.bytes_uploaded,
-        )
 
 
 @dataclass(eq=False, slots=True)
@@ -212,6 +163,8 @@ def _open_context(index: int | None) -> Device:
 
 def _backend(index: int) -> Any:
     """The EGL context of one device; its bare exceptions become RG501..RG504."""
+    if index < 0:
+        raise _environment("RG503", index=index, detail="devices count from 0")
     # The EGL library answers for core entry points too, so no libGL (and no X11) is loaded.
     library = os.environ.get("GLCONTEXT_LINUX_LIBEGL", "libEGL.so.1")
     try:
@@ -238,7 +191,7 @@ def _prepare(index: int, backend: Any) -> Device:
         raise _environment("RG504", index=index, required="4.5", found=error, apt=APT_LINE) from None
     ctx.gc_mode = "context_gc"
     gl = GL(backend)
-    info = _describe(index, gl, ctx)
+    info = describe(index, gl, int(ctx.version_code))
     missing = sorted(REQUIRED_EXTENSIONS - info.extensions)
     if info.version < REQUIRED_VERSION or missing:
         ctx.release()
@@ -255,22 +208,6 @@ def _prepare(index: int, backend: Any) -> Device:
     gl.glPixelStorei(e.PACK_ALIGNMENT, 1)
     gl.glPixelStorei(e.UNPACK_ALIGNMENT, 1)
     return Device(gl, ctx, info, DebugLog(gl))
-
-
-def _describe(index: int, gl: GL, ctx: Any) -> DeviceInfo:
-    def text(name: int) -> str:
-        return (gl.glGetString(name) or b"").decode(errors="replace")
-
-    limits = {name: gl.integer(value) for name, value in _LIMITS.items()}
-    limits |= {
-        f"max_compute_work_group_count_{axis}": gl.integer(e.MAX_COMPUTE_WORK_GROUP_COUNT, i)
-        for i, axis in enumerate("xyz")
-    }
-    extensions = frozenset(gl.glGetStringi(e.EXTENSIONS, i).decode() for i in range(gl.integer(e.NUM_EXTENSIONS)))
-    return DeviceInfo(
-        index, text(e.RENDERER), text(e.VENDOR), int(ctx.version_code), text(e.VERSION),
-        text(e.SHADING_LANGUAGE_VERSION), limits, extensions,
-    )  # fmt: skip
 
 
 def _environment(code: str, **data: Any) -> RenderGraphError:

@@ -12,7 +12,8 @@ from typing import Final
 
 from rendergraph.device import enums as e
 from rendergraph.device.context import Device
-from rendergraph.device.textures import Texture, create_texture, level_size
+from rendergraph.device.texture_rules import level_size
+from rendergraph.device.textures import Texture, create_texture
 from rendergraph.document.formats import FORMATS, Channel
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.plan.graph import TextureDesc

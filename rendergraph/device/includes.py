@@ -78,7 +78,8 @@ class _Expansion:
             code, commented = _without_comments(line, commented)
             match = _DIRECTIVE.match(code)
             if match is None:
-                body.append(line)
+                # Only a comment can hold one here, and moderngl would expand it even there.
+                body.append(line.replace("#include", "# include"))
             elif match[1] == "version":
                 if chain or self.version_given(body):
                     here = Position(str(path), number, 1)

@@ -19,17 +19,21 @@ _MOST: Final = 10
 
 
 def decode_compile_log(log: str, stage: str, files: FileTable, asked_by: Position | None) -> list[Diagnostic]:
-    """RG515 for each error of a compiler's log, at most ten; a log in no known dialect becomes one as a whole."""
+    """RG515 for each line a compiler's log complains of, at most ten; a log in no known dialect becomes one as a whole.
+
+    Only a line's first error is kept: the others are mostly its consequences.
+    """
     needed = f"the pass at {asked_by}" if asked_by else "this program"
-    found = []
+    found: dict[tuple[str, int], Diagnostic] = {}
     for line in log.splitlines():
         for dialect in _DIALECTS:
             if match := dialect.match(line):
                 parts = match.groupdict()
                 place = files.locate(int(parts["line"]), int(parts.get("column") or 1))
-                found.append(diagnose("RG515", place, stage=stage, detail=parts["text"].strip(), needed=needed))
+                error = diagnose("RG515", place, stage=stage, detail=parts["text"].strip(), needed=needed)
+                found.setdefault((place.file, place.line), error)
                 break
     if not found:
         detail = " ".join(log.split()) or "the driver gives no reason"
-        found.append(diagnose("RG515", files.locate(0), stage=stage, detail=detail, needed=needed))
-    return list({(d.position, d.text): d for d in found}.values())[:_MOST]
+        return [diagnose("RG515", files.locate(0), stage=stage, detail=detail, needed=needed)]
+    return list(found.values())[:_MOST]

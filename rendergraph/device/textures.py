@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from rendergraph.device import enums as e
 from rendergraph.device.context import Device
 from rendergraph.device.texels import clear_value, poison_value, transfer
+from rendergraph.device.texture_rules import level_size, say, why_impossible, why_not_viewable
 from rendergraph.document.formats import FORMATS
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.plan.graph import Target, TextureDesc
@@ -25,7 +26,6 @@ _TARGETS: Final = {
 _MULTISAMPLE: Final = {
     Target.D2: e.TEXTURE_2D_MULTISAMPLE, Target.D2_ARRAY: e.TEXTURE_2D_MULTISAMPLE_ARRAY,
 }  # fmt: skip
-_CUBES: Final = (Target.CUBE, Target.CUBE_ARRAY)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ def create_texture(device: Device, desc: TextureDesc, label: str) -> Texture:
 
     :raises RenderGraphError: RG520 beyond the device's limits or a shape GL has not, RG521 out of memory.
     """
-    if reason := _impossible(device, desc):
+    if reason := why_impossible(desc, device.info.limits):
         raise RenderGraphError([diagnose("RG520", label=label, reason=reason)])
     gl, internal, target = device.gl, FORMATS[desc.format].internal_format, gl_target(desc)
     device.debug.subject = label
@@ -91,9 +91,9 @@ def create_view(
 
     :raises RenderGraphError: RG522 where the formats, sizes, samples or shapes do not allow it.
     """
-    if reason := _not_viewable(texture.desc, desc, mip, layer):
+    if reason := why_not_viewable(texture.desc, desc, mip, layer):
         raise RenderGraphError([
-            diagnose("RG522", label=label, view=_say(desc), storage=_say(texture.desc), reason=reason)
+            diagnose("RG522", label=label, view=say(desc), storage=say(texture.desc), reason=reason)
         ])  # fmt: skip
     device.debug.subject = label
     glo = device.create_object("glGenTextures", label=label)
@@ -113,12 +113,6 @@ def create_view(
 def destroy_texture(device: Device, texture: Texture) -> None:
     """Delete a texture or view; storage goes with the last texture that uses it."""
     device.delete_object("glDeleteTextures", texture.glo)
-
-
-def level_size(desc: TextureDesc, mip: int) -> tuple[int, int, int]:
-    """Width, height and layers (or slices) of one mip level."""
-    layers = max(1, desc.layers >> mip) if desc.target is Target.D3 else desc.layers
-    return max(1, desc.width >> mip), max(1, desc.height >> mip), layers
 
 
 def upload_texture(
@@ -241,53 +235,3 @@ def _accept(device: Device, glo: int, label: str, desc: TextureDesc) -> None:
             raise RenderGraphError([diagnose("RG521", label=label, bytes=desc.bytes)])
         raise RenderGraphError([diagnose("RG520", label=label, reason="; ".join(texts))])
     device.debug.subject = ""
-
-
-def _say(desc: TextureDesc) -> str:
-    samples = f" x{desc.samples}" if desc.samples > 1 else ""
-    return f"{desc.format} {desc.target.value} {desc.width}x{desc.height}x{desc.layers}{samples}"
-
-
-def _impossible(device: Device, desc: TextureDesc) -> str:
-    limits = device.info.limits
-    name = {Target.D3: "max_3d_texture_size", Target.CUBE: "max_cube_map_texture_size"}.get(
-        desc.target, "max_texture_size"
-    )
-    sides = (desc.width, desc.height, desc.layers) if desc.target is Target.D3 else (desc.width, desc.height)
-    if min(desc.width, desc.height, desc.layers, desc.mips, desc.samples) < 1:
-        return f"{_say(desc)} has a size of zero"
-    if max(sides) > limits[name]:
-        return f"{_say(desc)} is above this device's {limits[name]} texels a side"
-    if desc.target is not Target.D3 and desc.layers > limits["max_array_texture_layers"]:
-        return f"{desc.layers} layers are above this device's {limits['max_array_texture_layers']}"
-    if desc.samples > limits["max_samples"]:
-        return f"{desc.samples} samples are above this device's {limits['max_samples']}"
-    if desc.mips > max(sides).bit_length():
-        return f"{desc.mips} mips are more than a side of {max(sides)} has"
-    if desc.samples > 1 and (desc.mips > 1 or desc.target not in _MULTISAMPLE):
-        return "multisampled textures are 2d or 2d_array, with one mip"
-    if desc.target in _CUBES and (desc.width != desc.height or desc.layers % 6):
-        return f"a cube is square with 6 layers (faces) a cube, not {_say(desc)}"
-    if desc.target is Target.CUBE and desc.layers != 6:
-        return f"one cube has 6 layers, not {desc.layers}"
-    if desc.target is Target.D2 and desc.layers != 1:
-        return f"a 2d texture has one layer, not {desc.layers}"
-    if desc.target is Target.D3 and FORMATS[desc.format].depth:
-        return "a volume cannot have a depth format"
-    return ""
-
-
-def _not_viewable(storage: TextureDesc, view: TextureDesc, mip: int, layer: int) -> str:
-    if FORMATS[storage.format].view_class != FORMATS[view.format].view_class:
-        return f"view classes {FORMATS[storage.format].view_class} and {FORMATS[view.format].view_class} differ"
-    if storage.samples != view.samples:
-        return "the sample counts differ"
-    if (storage.target is Target.D3) != (view.target is Target.D3):
-        return "a volume can only be viewed as a volume"
-    if mip + view.mips > storage.mips:
-        return f"it has {storage.mips} mips"
-    if (view.width, view.height) != level_size(storage, mip)[:2]:
-        return "the sizes differ"
-    if storage.target is not Target.D3 and layer + view.layers > storage.layers:
-        return f"it has {storage.layers} layers"
-    return ""

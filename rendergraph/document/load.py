@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
-from rendergraph.document.model_errors import Mistake, validate_strictly
+from rendergraph.document.model_errors import MAX_MISTAKES, Mistake, validate_strictly
 from rendergraph.document.models import DocumentModel
 from rendergraph.document.node_checks import check_nodes, misplaced
 from rendergraph.document.overrides import apply_overrides
@@ -71,7 +71,7 @@ def load_document(path: str | Path, overrides: Sequence[str] = ()) -> Document:
         [*reading.problems, *problems], [*(_problem(m, value, positions) for m in mistakes), *node_problems]
     )
     if model is None or any(p.severity == "error" for p in problems):
-        raise RenderGraphError(problems)
+        raise RenderGraphError(_not_too_many(problems))
     return Document(model, file, data.decode("utf-8"), params, positions, tuple(problems))
 
 
@@ -95,6 +95,13 @@ def _problem(mistake: Mistake, data: Any, positions: PositionMap) -> Diagnostic:
         hint = f"add `{mistake.expected}:` ({hint})"
     where = ".".join(map(str, loc)) or "the document"
     return diagnose(_CODES[mistake.kind], place, where=where, found=mistake.found, hint=hint, **values)
+
+
+def _not_too_many(problems: list[Diagnostic]) -> list[Diagnostic]:
+    if len(problems) <= MAX_MISTAKES:
+        return problems
+    shown = problems[:MAX_MISTAKES]
+    return [*shown, diagnose("RG114", shown[-1].position, limit=MAX_MISTAKES)]
 
 
 def _without_echoes(first: Sequence[Diagnostic], second: Sequence[Diagnostic]) -> list[Diagnostic]:

@@ -145,6 +145,12 @@ MESSAGES: Final[dict[str, Message]] = {
         "YAML 1.1 reads the bare words yes, no, on and off as booleans; YAML 1.2, which this tool follows, as text. "
         "Other tools may disagree about the file until the word is quoted.",
     ),
+    "RG114": Message(
+        "note",
+        "more mistakes follow; the first {limit} are shown",
+        "mend these and check again",
+        "A document wrong in hundreds of places is most often wrong in one way, many times over.",
+    ),
     "RG120": Message(
         "error",
         "{where} lacks the key '{key}'",
@@ -252,9 +258,10 @@ MESSAGES: Final[dict[str, Message]] = {
     ),
     "RG207": Message(
         "error",
-        "node '{node}' cannot be loaded: {reason}",
+        "node '{node}' is broken: {reason}",
         "this is a defect of the node's package, not of the graph; report it there or remove the pass",
-        "The node's folder or entry point exists, but importing it failed or it does not define exactly one node.",
+        "The node's folder or entry point exists, but importing it failed, it does not define exactly one node, or its check "
+        "of the parameters failed by itself.",
     ),
     "RG212": Message(
         "error",
@@ -331,6 +338,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "The parameters of this pass do not fit what is connected to it.",
     ),
     "RG226": Message("error", "the frame's {what} is {value}", "choose one from 1 to {limit}"),
+    "RG227": Message("error", "there is no code {name}", "{hint}"),
+    "RG228": Message("error", "the graph has no pass, sub-pass or resource '{name}'", "{hint}"),
     "RG229": Message(
         "error",
         "internal error in node '{node}' (pass '{name}'): {reason}",

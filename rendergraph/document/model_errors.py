@@ -15,6 +15,8 @@ from rendergraph.document.model_fields import Loc, help_of, keys_at
 from rendergraph.document.suggest import did_you_mean
 from rendergraph.document.yaml_scalars import YAML_1_1_BOOLEANS
 
+MAX_MISTAKES: Final = 100  # described in one document: nobody reads more, and looking for suggestions takes time
+
 ModelT = TypeVar("ModelT", bound=BaseModel)
 
 
@@ -83,11 +85,13 @@ def validate_strictly(model: type[ModelT], data: Any) -> tuple[ModelT | None, li
     """Validate plain YAML data without coercions (JSON's strict mode: a list may become a tuple, text no number).
 
     Data must hold only mappings with text keys, lists and scalars. The model is ``None`` when there are mistakes.
+    Of very many mistakes only the first are described.
     """
     try:
         return model.model_validate_json(json.dumps(data), strict=True), []
     except ValidationError as error:
-        return None, _one_a_place([_mistake(detail, model, data) for detail in error.errors(include_url=False)])
+        details = error.errors(include_url=False)[: MAX_MISTAKES + 1]
+        return None, _one_a_place([_mistake(detail, model, data) for detail in details])
 
 
 def describe(value: Any) -> str:

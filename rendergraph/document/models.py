@@ -11,7 +11,17 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, JsonValue, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    JsonValue,
+    Tag,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from rendergraph.document.formats import FORMATS
@@ -33,6 +43,15 @@ def _known_format(name: str) -> str:
         raise PydanticCustomError("RG303", "unknown format", {"format": name, "hint": did_you_mean(name, FORMATS)})
     return name
 
+
+def _not_boolean(value: Any) -> Any:
+    if isinstance(value, bool):
+        raise PydanticCustomError("int_type", "not a number")
+    return value
+
+
+#: ``Literal[1]`` alone would take ``true``, which equals 1 in Python.
+_NotBoolean = BeforeValidator(_not_boolean)
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=64)]
 #: A resource, or a node's internal one: ``light.histogram``.
@@ -226,7 +245,7 @@ class ResourceModel(Model):
     )
     layers: int = Field(1, ge=1, le=2048, description="Array layers.")
     mips: int = Field(1, ge=0, le=15, description="Mip levels; 0 for the whole chain.")
-    samples: Literal[1, 2, 4, 8] = Field(1, description="Samples a texel.")
+    samples: Annotated[Literal[1, 2, 4, 8], _NotBoolean] = Field(1, description="Samples a texel.")
     bytes: int | None = Field(
         None, ge=4, le=2**31 - 1, multiple_of=4, description="Size of a buffer.", json_schema_extra={"unit": "bytes"}
     )
@@ -313,7 +332,7 @@ class BudgetModel(Model):
 class DocumentModel(Model):
     """A graph file: which passes run, on which resources, and what is written out."""
 
-    rendergraph: Literal[1] = Field(..., description="Version of the language.")
+    rendergraph: Annotated[Literal[1], _NotBoolean] = Field(..., description="Version of the language.")
     title: str = Field("", max_length=200, description="What the graph shows.")
     frame: FrameModel = Field(default_factory=lambda: FrameModel(), description="The frame.")
     scene: SceneModel | None = Field(None, description="What is drawn.")

@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any
 
 from rendergraph.document.messages import Diagnostic, diagnose
-from rendergraph.document.model_errors import Mistake, validate_strictly
+from rendergraph.document.model_errors import MAX_MISTAKES, Mistake, validate_strictly
 from rendergraph.document.suggest import did_you_mean
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.discovery import find_node, node_names
@@ -30,6 +30,8 @@ def check_nodes(data: Mapping[str, Any], locate: Locate) -> tuple[dict[str, Para
     problems: list[Diagnostic] = []
     passes = data.get("passes")
     for name, entry in (passes if isinstance(passes, dict) else {}).items():
+        if len(problems) > MAX_MISTAKES:
+            break
         if not isinstance(entry, dict) or not isinstance(entry.get("node"), str):
             continue
         found = _node(name, entry["node"], locate)
@@ -42,7 +44,14 @@ def check_nodes(data: Mapping[str, Any], locate: Locate) -> tuple[dict[str, Para
                 _check_ports(name, found, direction, ports, connected, locate, problems)
         values = entry.get("set", {})
         if isinstance(values, dict):
-            checked, mistakes = validate_strictly(found.params_type, values)
+            try:
+                checked, mistakes = validate_strictly(found.params_type, values)
+            except Exception as error:  # a node's own validator may fail in any way
+                reason = f"its check of the parameters failed with {type(error).__name__}: {error}"
+                problems.append(
+                    diagnose("RG207", locate("passes", name, "set", key=True), node=found.name, reason=reason)
+                )
+                continue
             problems += (_parameter_problem(name, found, mistake, locate) for mistake in mistakes)
             if checked is not None:
                 params[name] = checked

@@ -31,6 +31,7 @@ from rendergraph.plan.graph import Position
 
 MAX_DEPTH: Final = 64
 MAX_VALUES: Final = 500_000
+_LONG: Final = 64  # characters of text that count as one value more, so that repeated long texts stay bounded too
 
 _LOADER: Final[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _LINE_BREAK = re.compile(r"\r\n|[\n\r\x85\u2028\u2029]")  # as the parser counts lines
@@ -181,8 +182,10 @@ class _Reader:
                 self._report("RG112", event.start_mark, text=_shown(text), problem=error.problem, hint=error.hint)
             if text in YAML_1_1_BOOLEANS:
                 self._report("RG113", event.start_mark, text=text, boolean=YAML_1_1_BOOLEANS[text])
+        extra = len(text) // _LONG
+        self.values += extra
         if event.anchor is not None:
-            self.anchors[event.anchor] = _Anchored(value, event.start_mark, 1, 0)
+            self.anchors[event.anchor] = _Anchored(value, event.start_mark, 1 + extra, 0)
         return value
 
     def _key(self, event: Any, top: _Open) -> str:
@@ -197,8 +200,10 @@ class _Reader:
             if not _is_text(key):
                 shown = _shown(key) if key else "nothing"
                 self._report("RG106", mark, found=shown, hint=f"quote it: '{shown}'" if key else "write a name")
+        extra = len(key) // _LONG
+        self.values += extra
         if event.anchor is not None:
-            self.anchors[event.anchor] = _Anchored(key, mark, 1, 0)
+            self.anchors[event.anchor] = _Anchored(key, mark, 1 + extra, 0)
         if key in top.branch.children:
             first = top.branch.children[key][0]
             assert first is not None
@@ -263,7 +268,7 @@ class _Reader:
                 problem, hint = "a merge key takes a mapping or a list of mappings", "write `<<: *anchor`"
                 self._report("RG109", event.start_mark, problem=problem, hint=hint)
                 return
-            self.values += len(source)
+            self.values += sum(1 + len(key) // _LONG for key in source)
             top.merges.append((source, where))
 
     # ---------------------------------------------------------------- diagnostics

@@ -45,7 +45,7 @@ class UserShaderParams(Params):
     )
     filter: Filter | dict[str, Filter] = knob(
         "nearest",
-        "Filter of textures read: one for all or one by port; mipmap is trilinear, compare is for shadows.",
+        "Filter of textures read, for all or by port: mipmap is trilinear, compare is for shadows.",
     )
     wrap: Wrap | dict[str, Wrap] = knob("clamp", "Addressing outside 0..1: one for all or one by port.")
     stencil: tuple[str, ...] = knob(
@@ -53,7 +53,7 @@ class UserShaderParams(Params):
     )
 
     def bind_reads(self, b: Builder, ports: Iterable[str]) -> dict[str, Binding]:
-        """Samplers, and read-only storage blocks for buffers, named as the ports. Raises RG225 for unknown port names."""
+        """Samplers, and read-only storage blocks for buffers, named as the ports. RG225 for ports not connected."""
         named = {"filter": self.filter, "wrap": self.wrap, "stencil": dict.fromkeys(self.stencil)}
         for field, by_port in named.items():
             if isinstance(by_port, dict):

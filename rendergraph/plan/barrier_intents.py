@@ -17,7 +17,8 @@ def compare_intents(
     graph: Graph, hazards: Iterable[tuple[Hazard, bool]], live: Mapping[str, str]
 ) -> tuple[list[Diagnostic], list[Diagnostic]]:
     """Errors (missing) and remarks (redundant, wrong kind, culled). ``live`` maps each sub-pass that runs to its pass;
-    a hazard comes with whether both ends lie in one frame. Nothing is compared when the author stated no barriers."""
+    a hazard comes with whether both ends lie in one frame. Nothing is compared when the author stated no barriers.
+    """
     if graph.barriers is None:
         return [], []
     derived: dict[tuple[str, str, str], set[str]] = {}  # (resource, earlier, later), by pass and by sub-pass -> kinds

@@ -6,7 +6,7 @@ accesses; 4.5 core, section 7.13.2). A ``glMemoryBarrier`` bit names how memory 
 - between an incoherent write and any later access (the later one would not see, or would race with, the write);
 - between any access and a later incoherent write (stores wait for earlier accesses only across a barrier).
 
-``glTextureBarrier`` is needed before a draw that samples what it also renders to, after earlier rendering to it (9.3.1).
+``glTextureBarrier`` is needed before a draw that samples what it renders to, after earlier rendering to it (9.3.1).
 Everything is derived on storage, so tenants of one slot guard each other; and around the frame boundary, since frame
 N's tail runs into frame N+1's head, with history swapped in between.
 """
@@ -85,7 +85,7 @@ def derive_barriers(
 
 
 def _explain(before: str, kind: str, hazards: Sequence[Hazard]) -> Decision:
-    """The first hazard stands for all: the reason is ``feedback_loop`` or ``shared_storage`` or ``incoherent_access``."""
+    """The first hazard stands for all; reasons: ``feedback_loop``, ``shared_storage``, ``incoherent_access``."""
     first = next((h for h in hazards if h.resource == h.previous_resource), hazards[0])
     if kind == "texture_barrier":
         reason = "feedback_loop"

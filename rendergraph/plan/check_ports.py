@@ -27,10 +27,8 @@ def check_ports(name: str, node: Node[Any], found: Connections, findings: Findin
         for port, resource in connected.items():
             if port in ports:
                 _check_port(name, node, direction, port, ports[port], resource, findings)
-    every = {**found.inputs, **found.outputs}
-    for port, declared in {**node.inputs, **node.outputs}.items():
-        if declared.like is not None and port in every and declared.like in every:
-            _check_like(name, port, every[port], declared.like, every[declared.like], found, findings)
+            if port in ports and (like := ports[port].like) is not None:
+                _check_like(name, direction, port, like, found, findings)
     _check_written(name, node, found, findings)
 
 
@@ -56,16 +54,16 @@ def _check_port(
         findings.add("RG323", *loc, wanted=declared.layers, found=desc.layers, **values)
 
 
-def _check_like(
-    name: str, port: str, resource: Resource, like: str, other: Resource, found: Connections, findings: Findings
-) -> None:
-    one, two = resource.desc, other.desc
-    if not isinstance(one, TextureDesc) or not isinstance(two, TextureDesc):
+def _check_like(name: str, direction: str, port: str, like: str, found: Connections, findings: Findings) -> None:
+    """Compare sizes with the port ``like``: the input of that name if there is one, else the output."""
+    resource = found.inputs[port] if direction == "input" else found.outputs[port]
+    other = found.inputs.get(like) or found.outputs.get(like)
+    if other is None or not isinstance(resource.desc, TextureDesc) or not isinstance(other.desc, TextureDesc):
         return
+    one, two = resource.desc, other.desc
     if (one.width, one.height) != (two.width, two.height):
-        section = "read" if port in found.inputs else "write"
         findings.add(
-            "RG324", "passes", name, section, port,
+            "RG324", "passes", name, _SECTION[direction], port,
             resource=resource.name, port=port, width=one.width, height=one.height,
             other=other.name, like=like, other_width=two.width, other_height=two.height,
         )  # fmt: skip

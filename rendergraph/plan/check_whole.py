@@ -9,7 +9,7 @@ from rendergraph.document.suggest import did_you_mean
 from rendergraph.node.params import Params
 from rendergraph.plan.findings import Findings
 from rendergraph.plan.graph import BarrierIntent, BufferDesc, Kind, Pass, Resource, TextureDesc
-from rendergraph.plan.graph_files import locate, named_files
+from rendergraph.plan.graph_files import file_problem, named_files
 
 
 def check_files(name: str, params: Params, known: dict[str, str | None], findings: Findings) -> None:
@@ -19,7 +19,7 @@ def check_files(name: str, params: Params, known: dict[str, str | None], finding
     """
     for field, file in named_files(params):
         if file not in known:
-            known[file] = _file_problem(findings, file)
+            known[file] = file_problem(findings.folder, file)
         problem = known[file]
         if problem is None:
             continue
@@ -31,15 +31,6 @@ def check_files(name: str, params: Params, known: dict[str, str | None], finding
             "folder": findings.folder,
         }
         findings.add("RG222", "passes", name, "set", field, **values)
-
-
-def _file_problem(findings: Findings, file: str) -> str | None:
-    path = locate(findings.folder, file)
-    if path is None:
-        return "lies outside the graph's folder"
-    if path.is_dir():
-        return "is a folder"
-    return None if path.is_file() else "does not exist"
 
 
 def check_use(findings: Findings, resources: Mapping[str, Resource | None]) -> set[str]:
@@ -70,9 +61,7 @@ def check_outputs(
     """Report outputs that nobody writes, or that cannot become the file they name."""
     model = findings.document.model
     written = {name for p in model.passes.values() for name in p.write.values()}
-    files: dict[str, str] = {}
     for name in sorted(model.outputs):
-        _check_output_file(findings, name, files)
         owner = name.partition(".")[0]
         found = resources.get(name) or internal.get(name)
         if found is None:
@@ -86,13 +75,6 @@ def check_outputs(
         if found.declared and found.kind in (Kind.TRANSIENT, Kind.PERSISTENT) and name not in written:
             findings.add("RG213", "outputs", name, key=True, resource=name, hint=did_you_mean(name, written))
         _check_output_desc(findings, name, found)
-
-
-def _check_output_file(findings: Findings, name: str, files: dict[str, str]) -> None:
-    file = findings.document.model.outputs[name].file
-    if files.setdefault(file, name) != name:
-        problem, hint = f"'{file}' is also written from '{files[file]}'", "give each output a file of its own"
-        findings.add("RG330", "outputs", name, "file", resource=name, problem=problem, hint=hint)
 
 
 def _check_output_desc(findings: Findings, name: str, found: Resource) -> None:

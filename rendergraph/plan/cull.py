@@ -36,7 +36,8 @@ def cull(index: Index, dependencies: Dependencies, enabled: bool) -> tuple[list[
     def explain(subject: str, group: Sequence[int]) -> Decision:
         names = sorted(set().union(*(written[s] for s in group)))
         outside = sorted({index.subpasses[r].name for s in group for r in readers[s] if r not in group})
-        replacing = {index.subpasses[r].name for s in group for r in dependencies.replaced_by.get(s, ()) if r not in group}
+        later = {r for s in group for r in dependencies.replaced_by.get(s, ()) if r not in group}
+        replacing = {index.subpasses[r].name for r in later}
         if not names:
             reason = "writes_nothing"
         elif outside:

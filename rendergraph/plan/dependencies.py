@@ -18,7 +18,8 @@ from rendergraph.plan.precedence import find_precedence
 class Dependencies:
     """Per sub-pass: ``needs`` must run before it for any reason; ``sources`` made content it loads (data flow only);
     ``replaced_by`` overwrote some of its content before anybody read it. ``final``: per cell, its last writer or -1.
-    ``order``: one legal order, grouped by pass. Lists may name a sub-pass twice."""
+    ``order``: one legal order, grouped by pass. Lists may name a sub-pass twice.
+    """
 
     needs: list[list[int]]
     sources: list[list[int]]
@@ -77,7 +78,8 @@ def _follow_after(index: Index, needs: list[list[int]]) -> None:
 
 def _undefined_loads(index: Index, blank: dict[tuple[int, int], int]) -> list[Diagnostic]:
     """An error for each load of which *no* cell was ever written. A load that is defined in part is let through: a
-    mip chain is often filled level by level and bound whole."""
+    mip chain is often filled level by level and bound whole.
+    """
     errors: list[Diagnostic] = []
     told: set[tuple[int, int]] = set()
     for (subpass, number), cells in sorted(blank.items()):

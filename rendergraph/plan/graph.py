@@ -154,8 +154,9 @@ class Access:
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """Shader files by stage (``vertex``, ``fragment``, ``geometry``, ``tess_control``, ``tess_evaluation``, ``compute``)
-    and the defines of this variant, sorted by name."""
+    """Shader files by stage (``vertex``, ``fragment``, ``geometry``, ``tess_control``, ``tess_evaluation``,
+    ``compute``) and the defines of this variant, sorted by name.
+    """
 
     stages: tuple[tuple[str, Path], ...]
     defines: tuple[tuple[str, str], ...] = ()
@@ -226,7 +227,8 @@ class DrawIndirect:
 @dataclass(frozen=True, slots=True)
 class DrawScene:
     """The scene's geometry by multi-draw-indirect: the queues named, in order. ``instances`` replays each draw (one a
-    cascade or cube face); the shader tells them apart by ``gl_InstanceID``."""
+    cascade or cube face); the shader tells them apart by ``gl_InstanceID``.
+    """
 
     queues: tuple[str, ...]  # of "opaque", "masked", "blended"
     instances: int = 1
@@ -343,7 +345,8 @@ class BarrierIntent:
 @dataclass(frozen=True, slots=True)
 class Decision:
     """Something the compiler decided, as data: ``kind`` (expand, specialise, cull, order, alias, barrier), a stable
-    ``reason`` code, the subject's name and the evidence behind it."""
+    ``reason`` code, the subject's name and the evidence behind it.
+    """
 
     kind: str
     reason: str

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from typing import Any, get_args
 
 from pydantic.fields import FieldInfo
 
 from rendergraph.node.params import Params
+
+MISSING = "does not exist"
 
 
 def locate(folder: Path, name: str) -> Path | None:
@@ -17,8 +20,22 @@ def locate(folder: Path, name: str) -> Path | None:
     try:
         found = (folder / name).resolve()
         return found if found.is_relative_to(folder) else None
-    except (OSError, ValueError):  # a name with a NUL, or a loop of links
+    except (OSError, ValueError, RuntimeError):  # a name with a NUL, or a loop of links
         return None
+
+
+def file_problem(folder: Path, name: str) -> str | None:
+    """What is wrong with a file named in a graph that lies in ``folder``, to stand after its name; or ``None``."""
+    path = locate(folder, name)
+    if path is None:
+        return "lies outside the graph's folder"
+    try:
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        return MISSING
+    except OSError as error:
+        return f"cannot be read: {error.strerror}"
+    return None if S_ISREG(mode) else "is a folder" if S_ISDIR(mode) else "is no regular file"
 
 
 def named_files(params: Params) -> Iterator[tuple[str, str]]:

@@ -19,7 +19,8 @@ def storage_bytes(resource: Resource) -> int:
 
 def find_lifetimes(graph: Graph, order: Sequence[SubPass]) -> dict[str, Lifetime]:
     """First and last use of every resource that the order touches, by name. Outputs are read after the frame, so
-    they live to its end."""
+    they live to its end.
+    """
     first: dict[str, int] = {}
     last: dict[str, int] = {}
     for position, subpass in enumerate(order):

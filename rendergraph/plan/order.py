@@ -37,7 +37,8 @@ def order(
 
 def _depth_first(index: Index, dependencies: Dependencies, needs: list[list[int]], live: list[bool]) -> list[int]:
     """Post-order from the outputs: producers stay close to consumers. The deepest dependency goes first, so that what
-    is made in one step is made last; a pass's own steps follow on each other."""
+    is made in one step is made last; a pass's own steps follow on each other.
+    """
     depth = [0] * len(needs)
     for s in dependencies.order:
         if needs[s]:

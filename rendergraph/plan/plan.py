@@ -11,7 +11,8 @@ from rendergraph.plan.graph import Decision, Graph, SubPass, TextureDesc
 @dataclass(frozen=True, slots=True)
 class PlanOptions:
     """How to plan. ``order``: ``default`` (deterministic), ``memory`` (a search of ``order_budget`` trials for the
-    smallest peak) or ``random`` (a legal random order from ``seed``, for testing)."""
+    smallest peak) or ``random`` (a legal random order from ``seed``, for testing).
+    """
 
     alias: bool = True
     cull: bool = True
@@ -30,7 +31,7 @@ class Lifetime:
 
 @dataclass(frozen=True, slots=True)
 class TextureSlot:
-    """Storage that tenants use one after another. ``desc`` is the storage's own; a tenant of another format is a view."""
+    """Storage that tenants use one after another. ``desc`` is its own; a tenant of another format is a view of it."""
 
     desc: TextureDesc
     tenants: tuple[str, ...]  # in order of use
@@ -48,7 +49,8 @@ class BufferRange:
 class Hazard:
     """Why a barrier is there: ``earlier`` and ``later`` are sub-pass names, ``kind`` a name of
     ``rendergraph.document.models.BarrierKind``. ``resource`` is what the later sub-pass uses, ``previous_resource``
-    what the earlier one used: they differ when two resources share storage."""
+    what the earlier one used: they differ when two resources share storage.
+    """
 
     resource: str
     previous_resource: str

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.plan.graph import Decision
@@ -21,7 +22,8 @@ Touch = tuple[int, int]  # sub-pass, LOADS | WRITES
 @dataclass(slots=True)
 class Precedence:
     """``sequence``: per cell, its touches in the order they must keep (readers between the same two writers are free).
-    ``passes``: all passes in one legal order."""
+    ``passes``: all passes in one legal order.
+    """
 
     sequence: list[list[Touch]]
     passes: list[int]
@@ -100,7 +102,7 @@ def _settle(index: Index, followers: list[dict[int, str]], contests: list[_Conte
         for contest in contests:
             chain = sorted(contest.writers, key=place.__getitem__)
             resource = index.resources[index.resource_of[contest.cell]].name
-            if all(reach[a] & bit[b] for a, b in zip(chain, chain[1:], strict=False)):
+            if all(reach[a] & bit[b] for a, b in pairwise(chain)):
                 edges += _thread(index, contest, chain, reach, bit, resource, result, told)
             else:
                 open_contests.append(contest)
@@ -134,8 +136,8 @@ def _thread(
                 result.decisions.append(Decision("order", "reads_before_later_writer", key[1], evidence))
     if (resource, "") not in told:
         told.add((resource, ""))
-        evidence = {"writers": [index.passes[w].name for w in chain]}
-        result.decisions.append(Decision("order", "writers_in_order", resource, evidence))
+        names = [index.passes[w].name for w in chain]
+        result.decisions.append(Decision("order", "writers_in_order", resource, {"writers": names}))
     order = list(readers[0])
     edges: list[tuple[int, int, str]] = []
     for i, writer in enumerate(chain):
@@ -168,7 +170,7 @@ def _report(
     for contest in contests:
         chain = sorted(contest.writers, key=place.__getitem__)
         resource = index.resource_of[contest.cell]
-        for pair in zip(chain, chain[1:], strict=False):
+        for pair in pairwise(chain):
             a, b = sorted(pair)
             if reach[pair[0]] & bit[pair[1]] or (resource, a, b) in told:
                 continue
@@ -181,8 +183,8 @@ def _report(
 def _topological(index: Index, followers: list[dict[int, str]]) -> list[int]:
     """All passes in a legal order. Raises ``RenderGraphError`` (RG233) with a shortest cycle when there is none."""
     waiting = [0] * len(followers)
-    for later in followers:
-        for p in later:
+    for after in followers:
+        for p in after:
             waiting[p] += 1
     ready = deque(p for p, count in enumerate(waiting) if not count)
     order: list[int] = []

@@ -11,13 +11,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from rendergraph.document.formats import REAL
 from rendergraph.document.models import MAX_SIZE, ResourceModel
 from rendergraph.document.suggest import did_you_mean
 from rendergraph.plan.findings import Findings
 from rendergraph.plan.graph import BufferDesc, Frame, Kind, Resource, Target, TextureDesc
-from rendergraph.plan.graph_files import locate
+from rendergraph.plan.graph_files import MISSING, file_problem, locate
 from rendergraph.plan.image_header import image_size
 
 Desc = TextureDesc | BufferDesc
@@ -145,16 +146,9 @@ class ResourceResolver:
     # ---- image files
 
     def _image_file(self, name: str, model: ResourceModel, file: str) -> Resource | None:
-        loc, folder = ("resources", name, "file"), self.findings.folder
-        path = locate(folder, file)
-        if path is None:
-            self.findings.add("RG311", *loc, resource=name, file=file, folder=folder)
-            return None
-        if not path.exists():
-            self.findings.add("RG310", *loc, resource=name, file=file, folder=folder)
-            return None
+        path = locate(self.findings.folder, file)
         size = self._read_size(name, file, path)
-        if size is None:
+        if path is None or size is None:
             return None
         format = model.format or ("rgba16f" if path.suffix.lower() == ".hdr" else "srgb8_a8")
         if format not in REAL:
@@ -167,16 +161,25 @@ class ResourceResolver:
         image = Resource(name, TextureDesc(format, *size, mips=mips), Kind.IMPORTED, file=path, position=at)
         return self._within_limits(image, ("resources", name))
 
-    def _read_size(self, name: str, file: str, path: Path) -> tuple[int, int] | None:
+    def _read_size(self, name: str, file: str, path: Path | None) -> tuple[int, int] | None:
+        """Width and height in texels, or ``None`` after reporting why there are none."""
+        loc: tuple[str, ...] = ("resources", name, "file")
+        values: dict[str, Any] = {"resource": name, "file": file}
+        if path is None:
+            self.findings.add("RG311", *loc, folder=self.findings.folder, **values)
+            return None
         try:
-            if not path.is_file():
-                raise ValueError("it is not a regular file")
+            if (problem := file_problem(self.findings.folder, file)) == MISSING:
+                self.findings.add("RG310", *loc, folder=self.findings.folder, **values)
+                return None
+            if problem is not None:
+                raise ValueError(f"it {problem}")
             width, height = image_size(path)
             if width < 1 or height < 1:
                 raise ValueError(f"its size is {width} x {height}")
         except (OSError, ValueError) as error:
             reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
-            self.findings.add("RG312", "resources", name, "file", resource=name, file=file, reason=reason)
+            self.findings.add("RG312", *loc, reason=reason, **values)
             return None
         return width, height
 

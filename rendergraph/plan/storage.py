@@ -35,7 +35,8 @@ _KIND = {
 @dataclass(frozen=True, slots=True)
 class Touch:
     """One access of a cell: when (``position`` in the order), of which resource, and what ``glMemoryBarrier`` kind
-    names it. ``feedback``: it samples what the same draw renders to."""
+    names it. ``feedback``: it samples what the same draw renders to.
+    """
 
     position: int
     resource: str
@@ -53,7 +54,8 @@ Home = tuple[str, str | int]  # ("slot", number), ("heap", 0) or ("own", resourc
 @dataclass(slots=True)
 class CellHistory:
     """The touches of one cell, ascending, one list a frame; after the last frame they begin again. More frames than
-    one when the storage is swapped with its history: it is this frame's, then last frame's."""
+    one when the storage is swapped with its history: it is this frame's, then last frame's.
+    """
 
     frames: list[list[Touch]]
 
@@ -61,7 +63,7 @@ class CellHistory:
 def cell_histories(
     graph: Graph, order: Sequence[SubPass], slot_of: Mapping[str, int], buffer_of: Mapping[str, BufferRange]
 ) -> list[CellHistory]:
-    """Histories of the cells that could need a barrier: those a shader stores to, or a draw both samples and renders."""
+    """Histories of the cells that could need a barrier: a shader stores to them, or a draw samples what it renders."""
     hot, chosen_by_resource = _survey(order)
     if not hot:
         return []

@@ -19,25 +19,25 @@ def mebibytes(count: float) -> str:
 
 def timing_table(record: dict[str, Any]) -> RenderableType:
     """One row a pass: median, range, share of the sum."""
-    device, frame = record["device"], record["frame_ms"]
+    device, frame, once = record["device"], record["frame_ms"], record["once_ms"]
+    notes = [
+        f"once: plan {once['plan']:.1f}, scene {once['scene']:.0f}, compile {once['compile']:.0f}, upload {once['upload']:.0f}, "
+        f"first frame {once['first_frame']:.0f} ms",
+        f"{device['renderer']}, {record['size'][0]}x{record['size'][1]}, {record['timed_frames']} timed frames",
+    ]
+    if frame["median"] is None:
+        return Text("\n".join(notes), style="dim")
     medians = [p["ms"]["median"] or 0.0 for p in record["passes"]]
-    total = sum(medians) or 1.0
+    total, longest = sum(medians) or 1.0, max(medians) or 1.0
     table = Table(title=f"Pass times · {record['clock']['name']}", title_justify="left", box=None, pad_edge=False)
     for heading, justify in (("pass", "left"), ("node", "left"), ("median ms", "right"), ("range", "right"), ("", "left")):
         table.add_column(heading, justify=justify, no_wrap=True)  # type: ignore[arg-type]
     for entry, value in zip(record["passes"], medians, strict=True):
         low, high = entry["ms"]["min"], entry["ms"]["max"]
-        span = "" if low is None else f"{low:.3f} .. {high:.3f}"
-        bar = "█" * max(1, round(_BAR * value / max(medians)))
+        span = f"{low:.3f} .. {high:.3f}"
+        bar = "█" * max(1, round(_BAR * value / longest))
         table.add_row(entry["name"], entry["node"], f"{value:.3f}", span, Text(f"{bar} {100 * value / total:.0f} %", "cyan"))
-    once = record["once_ms"]
-    median = frame["median"]
-    lines = [
-        f"sum of passes {total:.3f} ms" + (f", whole frame {median:.3f} ms" if median is not None else ""),
-        f"once: plan {once['plan']:.1f}, scene {once['scene']:.0f}, compile {once['compile']:.0f}, upload {once['upload']:.0f}, "
-        f"first frame {once['first_frame']:.0f} ms",
-        f"{device['renderer']}, {record['size'][0]}x{record['size'][1]}, {record['timed_frames']} timed frames",
-    ]
+    lines = [f"sum of passes {total:.3f} ms, whole frame {frame['median']:.3f} ms", *notes]
     return Group(table, Text("\n".join(lines), style="dim"))
 
 

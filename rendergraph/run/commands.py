@@ -113,9 +113,11 @@ class CommandBuilder:
             self._recorder.call(self._device.gl.glTextureBarrier)
 
     def _poison_all(self, names: Sequence[str]) -> None:
-        for name in names:
-            if self._plan.graph.resources[name].kind is not Kind.TRANSIENT:
-                continue
+        transient = [name for name in names if self._plan.graph.resources[name].kind is Kind.TRANSIENT]
+        if transient:
+            # The plan's barriers are for the plan's accesses: this write to memory others have just used is not one.
+            self._recorder.call(self._device.gl.glMemoryBarrier, enums.ALL_BARRIER_BITS)
+        for name in transient:
             if self._storage.is_texture(name):
                 self._recorder.call(poison_texture, self._device, self._texture(name))
             else:

@@ -52,7 +52,7 @@ def plan_document(
             if isinstance(subpass.work, DrawScene):
                 raise RenderGraphError([diagnose("RG567", subpass.position, subpass=subpass.name)])
     notes = loaded.notes if loaded is not None else ()
-    return PlannedDocument(plan, loaded, (*notes, *warnings, *more), middle - start, end - middle)
+    return PlannedDocument(plan, loaded, (*document.warnings, *notes, *warnings, *more), middle - start, end - middle)
 
 
 def _load(document: Document, source: str | None) -> LoadedScene | None:

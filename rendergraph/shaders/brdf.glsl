@@ -69,13 +69,19 @@ vec3 evaluate_brdf(Brdf b, vec3 light) {
     return ((1.0 - fresnel) * b.diffuse / PI + fresnel * specular) * nol;
 }
 
-// Share of constant light from all around that the specular lobe reflects. Fit by Karis, "Physically based shading on
-// mobile" (2014), to Lazarov's; clamped, because the fit leaves 0..1 by a few thousandths.
+// Share of constant light from all around that the specular lobe reflects: f0 * A + B, both a quotient of quadratics in
+// NoV and roughness, fitted to the integral (deferred_lighting/reference.py) to within 0.041 and 0.020.
 vec3 environment_reflectance(Brdf b, float roughness) {
-    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-    float a = min(r.x * r.x, exp2(-9.28 * b.nov)) * r.x + r.y;
-    vec2 scale_bias = vec2(-1.04, 1.04) * a + r.zw;
-    return clamp(b.f0 * scale_bias.x + scale_bias.y, 0.0, 1.0);
+    float x = b.nov;
+    float r = roughness;
+    vec2 above = vec2(-0.069, 1.029) + vec2(3.392, 0.489) * x + vec2(1.849, -0.071) * r
+        + vec2(-20.789, -2.120) * x * r + vec2(39.548, -2.407) * x * x + vec2(0.031, -0.650) * r * r
+        + vec2(-39.706, 2.220) * x * x * r + vec2(19.731, 2.379) * x * r * r;
+    vec2 below = vec2(1.0) + vec2(4.867, 3.994) * x + vec2(-0.626, 2.312) * r
+        + vec2(-25.981, -57.420) * x * r + vec2(35.452, 45.577) * x * x + vec2(1.719, 7.051) * r * r
+        + vec2(-28.935, -3.433) * x * x * r + vec2(26.371, 158.247) * x * r * r;
+    vec2 fit = clamp(above / below, 0.0, 1.0);
+    return min(b.f0 * fit.x + fit.y, 1.0);
 }
 
 #endif

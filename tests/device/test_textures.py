@@ -9,6 +9,7 @@ import pytest
 
 from rendergraph.device.context import Device
 from rendergraph.device.texels import transfer
+from rendergraph.device.texture_rules import level_size
 from rendergraph.device.textures import (
     Texture,
     clear_texture,
@@ -17,7 +18,6 @@ from rendergraph.device.textures import (
     create_view,
     destroy_texture,
     generate_mips,
-    level_size,
     poison_texture,
     read_texture,
     upload_texture,
@@ -49,7 +49,9 @@ def expected(format: str, value: tuple[float, ...]) -> tuple[np.ndarray, float]:
     row = FORMATS[format]
     given = np.array(value[: row.channels], dtype=np.float64)
     if row.depth:
-        return np.array([value[0]]), {"d16": 1 / 65535, "d24": 1 / (2**24 - 1), "d24s8": 1 / (2**24 - 1)}.get(format, 0.0)
+        return np.array([value[0]]), {"d16": 1 / 65535, "d24": 1 / (2**24 - 1), "d24s8": 1 / (2**24 - 1)}.get(
+            format, 2.0**-24
+        )
     if row.channel in (Channel.UINT, Channel.INT):
         return np.trunc(given), 0.0
     if format == "rgb10_a2":
@@ -101,7 +103,7 @@ def test_upload_reads_back_bit_for_bit(device: Device, make, format: str) -> Non
 
 
 def test_negative_values_survive_signed_formats(device: Device, make) -> None:
-    for format, right in (("r8_snorm", -127), ("r16_snorm" if "r16_snorm" in FORMATS else "rg16_snorm", -32767), ("r16f", -1.0)):
+    for format, right in (("r8_snorm", -127), ("rg16_snorm", -32767), ("r16f", -1.0)):
         texture = make(format)
         clear_texture(device, texture, (-1.0, -1.0, -1.0, -1.0))
         assert (read_texture(device, texture) == right).all()
@@ -213,7 +215,13 @@ def test_a_view_outlives_its_storage(device: Device, make) -> None:
 
 @pytest.mark.parametrize(
     ("change", "mip", "layer"),
-    [({"width": 4}, 0, 0), ({"mips": 2}, 1, 0), ({"layers": 2}, 0, 2), ({"samples": 4}, 0, 0), ({"target": Target.D3}, 0, 0)],
+    [
+        ({"width": 4}, 0, 0),
+        ({"mips": 2}, 1, 0),
+        ({"layers": 2}, 0, 2),
+        ({"samples": 4}, 0, 0),
+        ({"target": Target.D3}, 0, 0),
+    ],
 )
 def test_impossible_views_are_refused(device: Device, make, change: dict, mip: int, layer: int) -> None:
     storage = make("r32f", 8, 8, layers=3, mips=2, target=Target.D2_ARRAY)

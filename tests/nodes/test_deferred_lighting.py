@@ -79,7 +79,6 @@ def test_brdf_matches_float64(device: Device, tmp_path: Path) -> None:
         device, tmp_path, BRDF.format(call="cancelling_brdf(b, l)"), rows, 3,
         includes=("brdf.glsl",), functions=CANCELLING,
     )  # fmt: skip
-    print(error, brdf_error(bad, truth))
     assert error < 2e-3
     assert brdf_error(bad, truth) > 2e-2
 
@@ -105,7 +104,9 @@ def test_brdf_is_finite_and_not_negative_at_the_extremes(device: Device, tmp_pat
 
 
 def test_brdf_reflects_no_more_than_it_receives(device: Device, tmp_path: Path) -> None:
-    """White furnace: the integral of f cos over the hemisphere stays at or below one, for white and mirror-like alike."""
+    """White furnace: what a white surface sends out under light from all around. A metal loses what bounces between its
+    facets; under a dielectric's coat the half-vector Fresnel weight of glTF's model lets grazing views gain a little.
+    """
     side = 256
     u, v = np.meshgrid((np.arange(side) + 0.5) / side, (np.arange(side) + 0.5) / side)
     radius, angle = np.sqrt(u.ravel()), 2 * np.pi * v.ravel()
@@ -122,7 +123,8 @@ def test_brdf_reflects_no_more_than_it_receives(device: Device, tmp_path: Path) 
                 )
                 # Cosine-weighted samples: the mean of f / pdf, with cos in f already and pdf = cos / pi.
                 albedo = float((result[:, 0] / light[:, 2]).mean() * np.pi)
-                assert 0.2 < albedo <= 1.01, (roughness, metallic, cosine, albedo)
+                limit = 1.005 if metallic else (1.01 if cosine > 0.5 else 1.2)
+                assert 0.25 < albedo <= limit, (roughness, metallic, cosine, albedo)
 
 
 # ---------------------------------------------------------------- attenuation
@@ -190,6 +192,5 @@ def test_environment_fit_is_close_to_the_integral(device: Device, tmp_path: Path
     rows = np.array([[c, r, f] for c in (0.1, 0.3, 0.6, 1.0) for r in (0.1, 0.3, 0.6, 1.0) for f in (0.04, 0.5, 1.0)])
     result = run_shader_function(device, tmp_path, ENVIRONMENT, rows, 1, includes=("brdf.glsl",))[:, 0]
     truth = np.array([reference.directional_albedo(*row) for row in rows])
-    print(np.abs(result - truth).max())
-    assert np.abs(result - truth).max() < 0.1
+    assert np.abs(result - truth).max() < 0.06
     assert np.abs(rows[:, 2] - truth).max() > 0.3  # f0 alone, without the fit

@@ -101,8 +101,16 @@ def test_sparse(tiny, base):
 
 @pytest.mark.parametrize(
     ("dtype", "largest", "normalized", "scale"),
-    [("u1", 255, True, 255), ("u2", 65535, True, 65535), ("i1", 127, True, 127), ("i2", 32767, True, 32767)]
-    + [("u1", 255, False, 1), ("u2", 65535, False, 1), ("i1", -128, False, 1), ("i2", -32768, False, 1)],
+    [
+        ("u1", 255, True, 255),
+        ("u2", 65535, True, 65535),
+        ("i1", 127, True, 127),
+        ("i2", 32767, True, 32767),
+        ("u1", 255, False, 1),
+        ("u2", 65535, False, 1),
+        ("i1", -128, False, 1),
+        ("i2", -32768, False, 1),
+    ],  # fmt: skip
 )
 def test_quantised_positions(tiny, dtype, largest, normalized, scale):
     """KHR_mesh_quantization; elements padded to four bytes, as the stride rule asks."""

@@ -24,7 +24,7 @@ class EncodedImage:
     def __init__(self, content: bytes | memoryview, where: str) -> None:
         self._content = content
         self._where = where
-        self.width, self.height = _measure(bytes(content[:4]), content, where)
+        self.width, self.height = _measure(content, where)
         pixels = self.width * self.height
         if pixels > MAX_PIXELS:
             raise gltf_error("RG614", where, what="the image", pixels=pixels, limit=MAX_PIXELS)
@@ -87,13 +87,16 @@ class Images:
 # ---------------------------------------------------------------- sizes, from headers alone
 
 
-def _measure(magic: bytes, content: bytes | memoryview, where: str) -> tuple[int, int]:
+def _measure(content: bytes | memoryview, where: str) -> tuple[int, int]:
+    magic = bytes(content[:4])
+    if magic != b"\x89PNG" and magic[:2] != b"\xff\xd8":
+        raise gltf_error("RG613", where, reason="it is neither PNG nor JPEG")
     try:
-        size = _png_size(content) if magic == b"\x89PNG" else _jpeg_size(content) if magic[:2] == b"\xff\xd8" else None
+        size = _png_size(content) if magic == b"\x89PNG" else _jpeg_size(content)
     except struct.error:
         raise gltf_error("RG613", where, reason="it ends inside its header") from None
     if size is None:
-        raise gltf_error("RG613", where, reason="it is neither PNG nor JPEG")
+        raise gltf_error("RG613", where, reason="its header is damaged")
     if 0 in size:
         raise gltf_error("RG613", where, reason="it has no pixels")
     return size

@@ -26,7 +26,7 @@ def column(height: float, radius: float, detail: float, *, fluted: bool) -> Geom
     r, wide = radius, radius * 2.9
     top = height
     base = [
-        [(r * 1.36, 0.14), *_bulge(r * 1.36, r * 1.36, 0.14, 0.25, 0.055, detail)],
+        _bulge(r * 1.36, r * 1.36, 0.14, 0.25, 0.055, detail),
         _hollow(r * 1.26, r * 1.16, 0.25, 0.31, detail),
         _bulge(r * 1.18, r * 1.12, 0.31, 0.37, 0.03, detail),
         [(r * 1.06, 0.37), (r * 1.06, 0.40)],
@@ -92,9 +92,9 @@ def _capital(radius: float, y0: float, y1: float, detail: float) -> Geometry:
 
     def leaves(angle: F64, y: F64) -> F64:
         t = (y - y0) / (y1 - y0)
-        lower = np.abs(np.cos(4.0 * angle)) ** 0.6 * _curl(t, 0.08, 0.50)
-        upper = np.abs(np.sin(4.0 * angle)) ** 0.6 * _curl(t, 0.35, 0.92)
-        return 1.0 + 0.20 * lower + 0.22 * upper
+        lower = np.abs(np.cos(4.0 * angle)) ** 0.8 * _curl(t, 0.05, 0.50)
+        upper = np.abs(np.sin(4.0 * angle)) ** 0.8 * _curl(t, 0.35, 0.93)
+        return 1.0 + 0.27 * lower + 0.30 * upper
 
     return lathe([profile], around, leaves)
 

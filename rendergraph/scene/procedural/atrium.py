@@ -32,7 +32,7 @@ def atrium(detail: float, seed: int) -> Scene:
         Camera((-11.6, 1.7, -6.0), (2.0, 1.9, -5.4), fov=float(np.radians(58.0)), name="arcade"),
         Camera((9.6, 6.5, 5.6), (-3.0, 2.2, -2.5), fov=float(np.radians(60.0)), name="gallery"),
     ]
-    direction = np.array([0.42, -1.0, -0.50])
+    direction = np.array([0.40, -1.0, -0.42])
     x, y, z = (direction / np.linalg.norm(direction)).tolist()
     scene.sun = Sun((x, y, z), (9.0, 8.3, 7.2))
     scene.ambient = Ambient((0.42, 0.52, 0.68), (0.24, 0.20, 0.16))

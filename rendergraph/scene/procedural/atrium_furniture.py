@@ -21,7 +21,7 @@ from rendergraph.scene.procedural.atrium_plan import (
     SPRING,
 )
 from rendergraph.scene.procedural.block import block
-from rendergraph.scene.procedural.geometry import merge, surface
+from rendergraph.scene.procedural.geometry import Geometry, merge, surface
 from rendergraph.scene.procedural.mesh_builder import SceneBuilder, placement
 from rendergraph.scene.procedural.tessellation import segments
 from rendergraph.scene.scene import Light
@@ -57,18 +57,20 @@ def _curtains(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.
             y = GALLERY_SPRING - 0.62
             left = right = dyed[straight, dye]
         along = np.array([np.cos(arch.turn), -np.sin(arch.turn)]) * reach
-        builder.place(rail, placement(arch.x, y, arch.z, turn=arch.turn), "curtain rail")
-        builder.place(left, placement(arch.x - along[0], y, arch.z - along[1], turn=arch.turn), "curtain")
-        builder.place(right, placement(arch.x + along[0], y, arch.z + along[1], turn=arch.turn + pi), "curtain")
+        # Behind the columns' axis: the balustrade stands before it.
+        back = -0.10 * np.array([np.sin(arch.turn), np.cos(arch.turn)])
+        builder.place(rail, placement(arch.x + back[0], y, arch.z + back[1], turn=arch.turn), "curtain rail")
+        builder.place(left, placement(arch.x + back[0] - along[0], y, arch.z + back[1] - along[1], turn=arch.turn), "curtain")
+        builder.place(right, placement(arch.x + back[0] + along[0], y, arch.z + back[1] + along[1], turn=arch.turn + pi), "curtain")
 
 
 def _hangings(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.Generator, detail: float) -> None:
     """Woven hangings on the brick of the long walls, one a bay."""
-    across, down = segments(detail, 2, 20), segments(detail, 2, 24)
-    s, t = np.meshgrid(np.linspace(-0.5, 0.5, across + 1), np.linspace(0.0, 1.0, down + 1))
-    bulge = 0.035 + 0.02 * np.sin(3.0 * pi * s) * (1.0 - t) + 0.012 * np.sin(2.0 * pi * t + 4.0 * s)
-    points = np.stack([1.5 * s, 2.1 * (t - 1.0), bulge], axis=-1)
-    cloth = surface(points, np.stack([3.0 * s, -4.2 * t], axis=-1))
+    cells = (segments(detail, 2, 18), segments(detail, 2, 22))
+    cloth = _cloth((-0.75, 0.75), (-2.1, 0.0), cells, 0.0)
+    strips = ((-0.75, -0.61), (-2.1, 0.0)), ((0.61, 0.75), (-2.1, 0.0)), ((-0.61, 0.61), (-2.1, -1.96)), ((-0.61, 0.61), (-0.14, 0.0))
+    border = merge([_cloth(x, y, (cells[0] // 6 + 1, cells[1] if x[1] - x[0] < 1.0 else 1), 0.006) for x, y in strips])
+    trim = builder.mesh(border, materials.hangings[2])
     first = builder.mesh(cloth, materials.hangings[0])
     meshes = [first, *(builder.recoloured(first, dye) for dye in materials.hangings[1:])]
     rod = builder.mesh(furnishings.curtain_rail(1.75, detail), materials.wood)
@@ -76,14 +78,22 @@ def _hangings(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.
         z = np.sign(arch.z) * (OUTER_Z - 0.045)
         mesh = meshes[int(rng.integers(len(meshes)))]
         builder.place(mesh, placement(arch.x, 2.95, float(z), turn=arch.turn), "hanging")
+        builder.place(trim, placement(arch.x, 2.95, float(z), turn=arch.turn), "hanging border")
         builder.place(rod, placement(arch.x, 2.95, float(z), turn=arch.turn), "hanging rod")
+
+
+def _cloth(x: tuple[float, float], y: tuple[float, float], cells: tuple[int, int], lift: float) -> Geometry:
+    """A piece of a hanging: a rectangle of a gently waving cloth, ``lift`` in front of it."""
+    s, t = np.meshgrid(np.linspace(*x, cells[0] + 1), np.linspace(*y, cells[1] + 1))
+    wave = 0.035 + lift - 0.008 * np.sin(4.0 * s) * t + 0.010 * np.sin(3.0 * t + 2.5 * s)
+    return surface(np.stack([s, t, wave], axis=-1), np.stack([2.0 * s, -2.0 * t], axis=-1))
 
 
 def _balustrades(builder: SceneBuilder, materials: AtriumMaterials, detail: float) -> None:
     """Glass panes between bronze rails along the gallery."""
     width = BAY - 0.36
-    pane = builder.mesh(block((width, 0.74, 0.024)), materials.glass)
-    bars = [furnishings.curtain_rail(BAY - 0.2, detail).moved(0.0, y, 0.0) for y in (-0.40, 0.40)]
+    pane = builder.mesh(block((width, 0.74, 0.024), (0.0, 0.0, 0.10)), materials.glass)
+    bars = [furnishings.curtain_rail(BAY - 0.2, detail).moved(0.0, y, 0.10) for y in (-0.40, 0.40)]
     rails = builder.mesh(merge(bars), materials.bronze)
     for arch in ARCHES:
         world = placement(arch.x, GALLERY + 0.55, arch.z, turn=arch.turn)
@@ -98,11 +108,12 @@ def _plants(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.Ge
     palms = [builder.mesh(furnishings.palm(rng, detail), materials.frond) for _ in range(2)]
     shrubs = [builder.mesh(furnishings.shrub(rng, detail), materials.leaf) for _ in range(2)]
     x, z = HALF_X - 0.95, HALF_Z - 0.95
-    palm_places = [(i * x, j * z) for i in (-1, 1) for j in (-1, 1)] + [(i * 2.4, j * 2.0) for i in (-1, 1) for j in (-1, 1)]
+    palm_places = [(i * x, j * z) for i in (-1, 1) for j in (-1, 1)] + [(i * 3.0, j * 1.9) for i in (-1, 1) for j in (-1, 1)]
     shrub_places = [(-HALF_X + BAY * k, side * (HALF_Z - 0.75)) for k in range(1, 7) for side in (-1, 1)]
     for places, plants, large in ((palm_places, palms, 1.25), (shrub_places, shrubs, 0.85)):
         for number, (px, pz) in enumerate(places):
-            scale = large * float(rng.uniform(0.88, 1.12))
+            by_fountain = plants is palms and number >= 4
+            scale = large * (0.68 if by_fountain else 1.0) * float(rng.uniform(0.9, 1.1))
             jitter = rng.uniform(-0.12, 0.12, 2)
             world = placement(px + jitter[0], 0.0, pz + jitter[1], turn=float(rng.uniform(0.0, 2.0 * pi)), scale=scale)
             builder.place(pot, world, "pot")

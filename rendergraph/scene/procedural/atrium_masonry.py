@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from math import pi
+
+import numpy as np
 
 from rendergraph.scene.procedural import arcade
 from rendergraph.scene.procedural.arcade import BAY, THICKNESS
@@ -26,10 +29,12 @@ from rendergraph.scene.procedural.atrium_plan import (
 from rendergraph.scene.procedural.block import block
 from rendergraph.scene.procedural.geometry import Geometry, merge
 from rendergraph.scene.procedural.mesh_builder import SceneBuilder, placement
-from rendergraph.scene.procedural.shapes import disc, sheet
+from rendergraph.scene.procedural.shapes import sheet
 
 _TILES = 1.0 / 1.2  # texture repeats a metre: four tiles of 0.6 m
 _WALL = 0.3
+#: Turns x into y, so that wood's grain runs upwards.
+_UPRIGHT = np.array([[0.0, -1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 
 
 def build_masonry(builder: SceneBuilder, materials: AtriumMaterials, detail: float) -> None:
@@ -143,18 +148,16 @@ def _doors(builder: SceneBuilder, materials: AtriumMaterials, detail: float, bev
     frame = [block((jamb_width, spring, 0.34), (side * (radius + jamb_width / 2.0), spring / 2.0, 0.0), bevel) for side in (-1.0, 1.0)]
     jambs = builder.mesh(merge(frame), materials.stone)
     ring = builder.mesh(arcade.arch_ring(detail), materials.stone)
-    # The planks of the leaf stand upright; the round head is a disc whose lower half hides behind them.
-    head = disc(radius + 0.02, 24 if detail > 0.3 else 12, 1).placed(_upright())
-    planks = [block((0.24, spring + 0.02, 0.06), (-0.62 + 0.248 * k, spring / 2.0, 0.08), bevel) for k in range(6)]
-    leaf = builder.mesh(merge([head.moved(0.0, spring, 0.09), *planks]), materials.wood)
+    # Upright planks, each as tall as the round head where it is highest; the ring hides their square corners.
+    planks = []
+    for k in range(6):
+        x = (k - 2.5) * 0.25
+        tall = spring + math.sqrt(radius**2 - max(0.0, abs(x) - 0.12) ** 2)
+        planks.append(block((tall, 0.246, 0.06), (tall / 2.0, -x, 0.08), bevel).placed(_UPRIGHT))
+    leaf = builder.mesh(merge(planks), materials.wood)
     for side, turn in ((-1.0, pi / 2.0), (1.0, -pi / 2.0)):
         world = placement(side * OUTER_X, 0.0, 0.0, turn=turn)
         builder.place(jambs, world, "door jambs")
         builder.place(ring, placement(side * OUTER_X, spring, 0.0, turn=turn, scale=scale), "door arch")
         builder.place(leaf, world, "door")
 
-
-def _upright():  # noqa
-    import numpy as np
-
-    return np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])

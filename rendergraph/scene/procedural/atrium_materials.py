@@ -33,7 +33,7 @@ class AtriumMaterials:
 
 
 #: Linear dyes: madder red, indigo, weld yellow, verdigris.
-_DYES = ((0.62, 0.045, 0.035), (0.05, 0.10, 0.42), (0.78, 0.42, 0.06), (0.04, 0.30, 0.24))
+_DYES = ((0.72, 0.075, 0.05), (0.07, 0.13, 0.46), (0.95, 0.52, 0.10), (0.07, 0.36, 0.27))
 
 
 def texture_size(detail: float) -> int:

@@ -39,8 +39,8 @@ def curtain(rng: np.random.Generator, size: int) -> Maps:
     gold = np.clip(np.maximum(ornament * 0.55, band), 0.0, 1.0)
     thread = (0.5 + 0.5 * np.sin(2.0 * np.pi * x * 128.0)).astype(np.float32)
     fuzz = noise(rng, size, exponent=1.2, scale=12.0)
-    color = blend((0.70, 0.68, 0.68), (0.95, 0.94, 0.94), 0.35 * thread + 0.65 * fuzz)
-    color = blend(color, (1.0, 0.84, 0.50), gold)
+    color = blend((0.52, 0.51, 0.51), (0.76, 0.75, 0.75), 0.35 * thread + 0.65 * fuzz)
+    color = blend(color, (1.0, 0.97, 0.90), gold)
     return Maps(
         base_image("curtain", color, alpha),
         normal_image("curtain", gold * 0.8 + 0.2 * fuzz + 0.12 * thread, 0.004),

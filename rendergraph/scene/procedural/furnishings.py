@@ -15,10 +15,10 @@ def drape(rng: np.random.Generator, width: float, drop: float, tie: float | None
     ``tie``: distance below the rail where it is gathered to x = 0; ``None`` hangs straight. v is 0 at the rail, 1 at
     the hem.
     """
-    across, down = segments(detail, 12, 56), segments(detail, 5, 40)
+    folds = max(3, round(width * 4.0))
+    across, down = folds * segments(detail, 3, 12), segments(detail, 4, 36)
     s = np.linspace(0.0, 1.0, across + 1)[None, :]
     y = np.linspace(1.0, 0.0, down + 1)[:, None]  # rows run up: the hem first; y is the share of the drop
-    folds = max(3, round(width * 4.5))
     phase = rng.uniform(0.0, 2.0 * np.pi, 3)
     # Folds keep their place at the rail and wander a little on the way down.
     wander = 0.35 * y * np.sin(3.0 * np.pi * s + phase[0]) + 0.18 * y * np.sin(7.0 * s + 4.0 * y + phase[1])
@@ -32,7 +32,7 @@ def drape(rng: np.random.Generator, width: float, drop: float, tie: float | None
         narrowing = np.where(t < 1.0, above, below)
     depth = (0.055 + 0.03 * y) * (1.0 + 0.5 * (1.0 - narrowing))
     sway = 0.03 * y**2 * np.sin(2.0 * np.pi * s + phase[2])
-    x = width * narrowing * (s + 0.012 * np.sin(2.0 * fold))
+    x = width * narrowing * (s + 0.05 / folds * np.sin(2.0 * fold) / (2.0 * np.pi))
     z = depth * np.sin(fold) + sway
     points = np.stack([x, np.broadcast_to(-y * drop, x.shape), z], axis=-1)
     # The cloth is half as wide again as the opening; a texture width is 1.6 m.

@@ -88,7 +88,7 @@ def marble_tiles(rng: np.random.Generator, size: int) -> Maps:
     hair = 1.0 - smoothstep(0.0, 0.02, np.abs(fine + 0.3 * cloud - 0.66))
     veins = np.maximum(vein * 0.8, hair * 0.5)
     light = blend(blend((0.80, 0.76, 0.69), (0.90, 0.87, 0.81), cloud), (0.58, 0.52, 0.45), veins * 0.7)
-    deep = blend(blend((0.20, 0.11, 0.10), (0.33, 0.17, 0.14), cloud), (0.72, 0.58, 0.50), veins * 0.55)
+    deep = blend(blend((0.40, 0.22, 0.17), (0.56, 0.34, 0.26), cloud), (0.80, 0.68, 0.58), veins * 0.55)
     to_joint = np.minimum(0.25 - np.abs(x * 1.0 % 0.5 - 0.25), 0.25 - np.abs(y * 1.0 % 0.5 - 0.25))
     face = smoothstep(0.002, 0.006, to_joint)
     color = blend((0.42, 0.38, 0.33), blend(light, deep, dark), face)
@@ -122,11 +122,11 @@ def weave(rng: np.random.Generator, size: int, threads: int = 48) -> Maps:
     warp = np.sqrt(np.abs(np.sin(np.pi * x * threads))) * (0.5 + 0.5 * over)
     weft = np.sqrt(np.abs(np.sin(np.pi * y * threads))) * (1.0 - 0.5 * over)
     thread = np.maximum(warp, weft).astype(np.float32)
-    lozenge = np.abs(x * 4.0 % 1.0 - 0.5) + np.abs(y * 4.0 % 1.0 - 0.5)
-    ornament = smoothstep(0.03, 0.0, np.abs(np.abs(lozenge - 0.5) - 0.12) - 0.03)
+    lozenge = np.abs(x * 2.0 % 1.0 - 0.5) + np.abs(y * 2.0 % 1.0 - 0.5)
+    ornament = smoothstep(0.03, 0.0, np.abs(np.abs(np.abs(lozenge - 0.5) - 0.22) - 0.09) - 0.03)
     fuzz = noise(rng, size, exponent=1.0, scale=16.0)
-    color = blend((0.66, 0.64, 0.62), (0.92, 0.91, 0.90), thread * 0.6 + fuzz * 0.4)
-    color = blend(color, (1.0, 0.86, 0.55), ornament * 0.8)
+    color = blend((0.46, 0.45, 0.44), (0.72, 0.71, 0.70), thread * 0.6 + fuzz * 0.4)
+    color = blend(color, (1.0, 0.98, 0.92), ornament * 0.85)
     return Maps(
         base_image("weave", color),
         normal_image("weave", thread * 0.8 + fuzz * 0.2 + ornament * 0.5, 0.008),
