@@ -14,6 +14,18 @@ if TYPE_CHECKING:
     from rendergraph.device.context import Device
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Options of this suite."""
+    parser.addoption("--regenerate-goldens", action="store_true", help="write the golden images instead of comparing")
+
+
+@pytest.fixture(autouse=True)
+def _opengl_for_marked_tests(request: pytest.FixtureRequest) -> None:
+    """Tests marked ``gpu`` are skipped with the device fixture's reason where there is no OpenGL."""
+    if request.node.get_closest_marker("gpu"):
+        request.getfixturevalue("session_device")
+
+
 @pytest.fixture(scope="session")
 def session_device() -> Iterator[Device]:
     """The device; tests are skipped where there is no OpenGL, unless ``RG_REQUIRE_GL`` demands it."""

@@ -1,17 +1,17 @@
 """Which packing of a normal a texture format gets: the defines that shaders/packing.glsl is compiled with.
 
-===================  =====  ==========  =============================
+===================  =====  ==========  ==============================
 format               bytes  packing     largest error (degrees)
-===================  =====  ==========  =============================
+===================  =====  ==========  ==============================
 rg8, rg8_snorm       2      octahedral  0.95, 0.95
 rg16, rg16_snorm     4      octahedral  0.0037, 0.0037
-rg16f                4      octahedral  0.030
+rg16f                4      octahedral  0.059 (0.118 where truncated)
 rgb10_a2             4      xyz         0.096
 rgba8, rgba8_snorm   4      xyz         0.39, 0.39
-rgba16f              8      xyz         0.024
-rg32f                8      octahedral  0 (float32 rounding)
-rgba32f              16     xyz         0 (float32 rounding)
-===================  =====  ==========  =============================
+rgba16f              8      xyz         0.02 (0.04 where truncated)
+rg32f                8      octahedral  float32 rounding
+rgba32f              16     xyz         float32 rounding
+===================  =====  ==========  ==============================
 
 Octahedral normals: Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2), 2014.
 """

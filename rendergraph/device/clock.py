@@ -6,6 +6,7 @@ import time
 from dataclasses import dataclass, field
 from typing import Final, Protocol
 
+from rendergraph.device import enums as e
 from rendergraph.device.clock_proof import ClockProof, prove_clock
 from rendergraph.device.context import Device
 from rendergraph.device.timestamps import create_timestamp, read_available, read_timestamp

@@ -22,7 +22,7 @@ from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.plan.graph import Position
 
 if TYPE_CHECKING:
-    from rendergraph.device.clock import ClockProof
+    from rendergraph.device.clock_proof import ClockProof
 
 APT_LINE: Final = "sudo apt-get install -y --no-install-recommends libegl1 libgl1-mesa-dri"
 REQUIRED_VERSION: Final = 450

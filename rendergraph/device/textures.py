@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from rendergraph.device import enums as e
 from rendergraph.device.context import Device
 from rendergraph.device.texels import clear_value, poison_value, transfer
-from rendergraph.device.texture_rules import level_size, say, why_impossible, why_not_viewable
+from rendergraph.device.texture_rules import level_size as level_size
+from rendergraph.device.texture_rules import say, why_impossible, why_not_viewable
 from rendergraph.document.formats import FORMATS
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.plan.graph import Target, TextureDesc

@@ -14,7 +14,7 @@ from rendergraph.plan.graph import Position
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One row of the table: ``text`` and ``help`` are ``str.format`` templates, ``explain`` is what ``rg explain`` adds."""
+    """One row of the table: ``text`` and ``help`` are ``str.format`` templates, ``explain`` is added by ``rg explain``."""
 
     severity: str  # "error" | "warning" | "note"
     text: str
@@ -116,8 +116,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "{problem}",
         "{hint}",
-        "An alias (`*name`) repeats the value marked by its anchor (`&name`) earlier in the file; it may not stand inside "
-        "that value. A merge key (`<<`) takes a mapping or a list of mappings.",
+        "An alias (`*name`) repeats the value marked by its anchor (`&name`) earlier in the file; it may not stand "
+        "inside that value. A merge key (`<<`) takes a mapping or a list of mappings.",
     ),
     "RG110": Message(
         "error",
@@ -135,8 +135,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "ambiguous or impossible number {text}: {problem}",
         "{hint}",
-        "YAML 1.1 reads `010` as octal 8, YAML 1.2 as decimal 10. Rather than pick one silently, the reader asks: write "
-        "`10`, `0o10` or `'010'`. Numbers must also fit 64 bits.",
+        "YAML 1.1 reads `010` as octal 8, YAML 1.2 as decimal 10. Rather than pick one silently, the reader asks: "
+        "write `10`, `0o10` or `'010'`. Numbers must also fit 64 bits.",
     ),
     "RG113": Message(
         "warning",
@@ -185,8 +185,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "{found} is not a name",
         "start with a letter or underscore and go on with letters, digits and underscores, at most 64",
-        "Names of passes and resources appear in shaders, reports and on the command line, so they are plain identifiers. "
-        "A node's internal resource is written `pass.name`.",
+        "Names of passes and resources appear in shaders, reports and on the command line, so they are plain "
+        "identifiers. A node's internal resource is written `pass.name`.",
     ),
     "RG126": Message(
         "error",
@@ -236,7 +236,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "pass '{name}' does not connect the required output '{port}' of node '{node}'",
         "add `{port}: RESOURCE` under `write:` ({meaning})",
-        "Every output port that is not optional must be given a resource. It is declared under `resources:`, or named in `outputs:`.",
+        "Every output port that is not optional must be given a resource. It is declared under `resources:`, "
+        "or named in `outputs:`.",
     ),
     "RG204": Message(
         "error",
@@ -260,8 +261,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "node '{node}' is broken: {reason}",
         "this is a defect of the node's package, not of the graph; report it there or remove the pass",
-        "The node's folder or entry point exists, but importing it failed, it does not define exactly one node, or its check "
-        "of the parameters failed by itself.",
+        "The node's folder or entry point exists, but importing it failed, it does not define exactly one node, or "
+        "its check of the parameters failed by itself.",
     ),
     "RG212": Message(
         "error",

@@ -333,7 +333,9 @@ class Builder:
 
     def mips(self, step: str, resource: str) -> None:
         """Fill the lower mip levels of a texture from its first."""
-        accesses = (Access(resource, Usage.COPY_FROM, mip=0), Access(resource, Usage.COPY_TO, load=True))
+        levels = range(1, self.texture_desc(resource).mips)
+        filled = (Access(resource, Usage.COPY_TO, load=False, mip=level) for level in levels)
+        accesses = (Access(resource, Usage.COPY_FROM, mip=0), *filled)
         self._add(SubPass(self._step(step), self.pass_name, accesses, GenerateMips(resource), position=self.position))
 
     def groups(self, resource: str, tile: tuple[int, int] = (8, 8), depth: int = 1) -> tuple[int, int, int]:

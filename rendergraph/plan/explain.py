@@ -15,7 +15,7 @@ from rendergraph.plan.plan import Plan
 SENTENCES: Final[Mapping[tuple[str, str], tuple[str, ...]]] = {
     ("expand", "node_expanded"): ("{subject} is a {node} and became {steps}",),
     ("expand", "output_undeclared"): (
-        "{subject} is not declared: it is a frame-sized texture of format {format}, as {from} asks",
+        "{subject} is not declared: it is a frame-sized texture of format {format}, by {from}",
     ),
     ("expand", "kept_for_history"): ("{subject} is kept to the next frame, where {history} shows it",),
     ("expand", "kept_for_output"): ("{subject} is kept to the end of the frame, to be written to {file}",),
@@ -42,9 +42,7 @@ SENTENCES: Final[Mapping[tuple[str, str], tuple[str, ...]]] = {
     ("order", "reads_before_later_writer"): ("{subject} reads {resource} before {before} writes it again",),
     ("alias", "shares_slot"): ("{subject} shares texture slot {slot} with {with}: they are never live at once",),
     ("alias", "shares_heap_range"): ("{subject} shares bytes of the buffer heap with {with}",),
-    ("alias", "only_one_in_class"): (
-        "{subject} shares nothing: no other transient resource has its size and view class",
-    ),
+    ("alias", "only_one_in_class"): ("{subject} shares nothing: no other transient resource is of its class",),
     ("alias", "overlaps_in_time"): (
         "{subject} shares nothing: it is live together with {with}",
         "{subject} shares nothing: it is live together with all it could share with",

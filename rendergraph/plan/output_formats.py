@@ -24,11 +24,14 @@ def undeclared_outputs(
     for name in sorted(model.outputs):
         if name in model.resources or "." in name:
             continue
-        format, origin = model.outputs[name].format, "outputs"
+        format, origin = model.outputs[name].format, "its output entry"
         if format is None and name in writers:
             format, origin = writers[name]
         if format is None:
-            format, origin = "rgba8" if model.outputs[name].file.lower().endswith(".png") else "rgba16f", "file"
+            format, origin = (
+                "rgba8" if model.outputs[name].file.lower().endswith(".png") else "rgba16f",
+                "its file's suffix",
+            )
         found[name] = TextureDesc(format, frame.width, frame.height)
         decisions.append(Decision("expand", "output_undeclared", name, {"format": format, "from": origin}))
     return found
@@ -41,6 +44,6 @@ def _writers(findings: Findings, nodes: Mapping[str, Node[Any]]) -> dict[str, tu
         for port, resource in findings.document.model.passes[name].write.items():
             declared = node.outputs.get(port)
             if declared is not None and declared.formats:
-                candidate = (declared.modify, f"{name}.{port}", declared.formats[0])
+                candidate = (declared.modify, f"port {name}.{port}", declared.formats[0])
                 best[resource] = min(best.get(resource, candidate), candidate)
     return {resource: (format, port) for resource, (_, port, format) in best.items()}

@@ -42,9 +42,8 @@ FUZZ = settings(
 )
 
 _fragments = st.sampled_from(
-    [*"{}[]|>#'\"\t", ": ", "\n", "- ", "&b ", "*b", "<<: ", "? ", "!x ", "---\n", "  ", "010", "1e400", "yes", "~", "null",
-     ".nan", "1e-3", "\ufeff", "\x00",
-     "\x85", "\u2028", "é", "🙂", "%YAML 1.1\n"]
+    [*"{}[]|>#'\"\t", ": ", "\n", "- ", "&b ", "*b", "<<: ", "? ", "!x ", "---\n", "  ", "010", "1e400", "yes", "~",
+     "null", ".nan", "1e-3", "\ufeff", "\x00", "\x85", "\u2028", "é", "🙂", "%YAML 1.1\n"]
 )  # fmt: skip
 _scalars = (
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8) | st.sampled_from(["blur", "image"])

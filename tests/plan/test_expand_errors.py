@@ -312,7 +312,7 @@ outputs: {image: {file: a.exr}, more: {file: b.exr}}
     with pytest.raises(RenderGraphError) as caught:
         expand(write(tmp_path, text))
     found = [(d.code, d.position.line, d.position.column) for d in caught.value.diagnostics if d.position]
-    assert found == [("RG308", 3, 45), ("RG305", 4, 13), ("RG212", 6, 39), ("RG218", 7, 58), ("RG229", 8, 13)]
+    assert found == [("RG308", 3, 45), ("RG305", 4, 13), ("RG212", 6, 39), ("RG218", 7, 55), ("RG229", 8, 13)]
 
 
 def test_a_wrong_resource_is_reported_once_and_silences_what_depends_on_it(tmp_path: Path) -> None:
