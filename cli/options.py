@@ -37,7 +37,7 @@ SeedOption = Annotated[int, typer.Option("--order-seed", min=0, help="Seed of th
 
 def parse_size(text: str | None) -> tuple[int, int] | None:
     """``"640x360"`` as a pair. Raises ``typer.BadParameter``."""
-    from rendergraph.document.models import MAX_SIZE
+    from rendergraph.document.field_types import MAX_SIZE
 
     if text is None:
         return None

@@ -76,8 +76,8 @@ class Copy(Node[CopyParams]):
             return "samples are resolved at one size only"
         if two.samples > 1 and one.samples != two.samples:
             return f"{one.samples} samples cannot be spread over {two.samples}"
-        if one.layers > 1 or two.layers > 1:
-            return "layers are copied, not blitted"
+        if one.layers != two.layers:
+            return f"the source has {one.layers} layers, the destination {two.layers}"
         return self._mip_problem(one, two, same=False)
 
     def _mip_problem(self, one: TextureDesc, two: TextureDesc, same: bool = True) -> str:

@@ -17,7 +17,12 @@ class DeferredLightingParams(Params):
     """What the light costs beside the lights themselves."""
 
     shadow_taps: int = knob(
-        3, "Width of the shadow filter: a box of this many bilinear taps a side.", unit="texel", ge=1, le=9, accurate="up"
+        3,
+        "Width of the shadow filter: a box of this many bilinear taps a side.",
+        unit="texel",
+        ge=1,
+        le=9,
+        accurate="up",
     )
 
 

@@ -97,9 +97,7 @@ def cone(cosine: F64, inner: F64, outer: F64) -> F64:
     return value
 
 
-def ambient(
-    normal: F64, view: F64, base_color: F64, roughness: F64, metallic: F64, sky: F64, ground: F64
-) -> F64:
+def ambient(normal: F64, view: F64, base_color: F64, roughness: F64, metallic: F64, sky: F64, ground: F64) -> F64:
     """Radiance reflected from the hemisphere of constant ``sky`` and ``ground`` radiance, ``float64[..., 3]``."""
 
     def radiance(direction: F64, width: F64) -> F64:

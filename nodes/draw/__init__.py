@@ -33,7 +33,7 @@ class DrawParams(UserRasterParams):
     draws: int = knob(1, "Draws in the `indirect` buffer.", ge=1, le=65536)
     instances: int = knob(1, "Instances of each draw.", ge=1, le=1 << 24)
     topology: Literal["triangles", "triangle_strip", "lines", "line_strip", "points"] = knob(
-        "triangles", "How vertices make primitives (patches of the same, when tessellated)."
+        "triangles", "How vertices make primitives; tessellation shaders take triangles as patches of three."
     )
     depth_test: Literal["closer", "closer_equal", "equal", "always", "farther", "none"] = knob(
         "closer", "Which fragments pass, by distance from the camera, where depth is connected."
@@ -52,8 +52,8 @@ class DrawParams(UserRasterParams):
             )
         if self.tess_control is not None and self.tess_evaluation is None:
             raise ValueError("tess_control needs tess_evaluation")
-        if self.tess_evaluation is not None and self.topology.endswith("strip"):
-            raise ValueError("patches are made of triangles, lines or points, not of strips")
+        if self.tess_evaluation is not None and self.topology != "triangles":
+            raise ValueError("tessellation shaders take triangles, as patches of three vertices")
         return self
 
 
@@ -114,7 +114,8 @@ class Draw(Node[DrawParams]):
         params = self.params
         if params.queues:
             return DrawScene(params.queues, params.instances, params.cull)
+        topology = "patches" if params.tess_evaluation is not None else params.topology
         if params.indirect is not None:
             require_ports(b, "indirect", [params.indirect], b.inputs, "read")
-            return DrawIndirect(b.input(params.indirect), count=params.draws, topology=params.topology)
-        return DrawArrays(params.vertices, params.instances, params.topology)
+            return DrawIndirect(b.input(params.indirect), count=params.draws, topology=topology)
+        return DrawArrays(params.vertices, params.instances, topology)

@@ -19,7 +19,7 @@ def log_luminances(image: npt.NDArray[np.floating], min_ev: float, max_ev: float
     texels = image[::stride, ::stride, :3].astype(np.float64).reshape(-1, 3)
     texels = texels[np.isfinite(texels).all(axis=1)]
     y = np.maximum(texels, 0.0) @ _REC709
-    return np.clip(np.log2(np.maximum(y, 2.0 ** (min_ev - 1))), min_ev, max_ev)
+    return np.asarray(np.clip(np.log2(np.maximum(y, 2.0 ** (min_ev - 1))), min_ev, max_ev))
 
 
 def trimmed_mean(evs: F64, low: float, high: float) -> float:

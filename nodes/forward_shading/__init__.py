@@ -29,7 +29,12 @@ class ForwardShadingParams(Params):
         "off", "full: draw depth alone first, so that every pixel is shaded once; pays above an overdraw of about 2."
     )
     shadow_taps: int = knob(
-        3, "Width of the shadow filter: a box of this many bilinear taps a side.", unit="texel", ge=1, le=9, accurate="up"
+        3,
+        "Width of the shadow filter: a box of this many bilinear taps a side.",
+        unit="texel",
+        ge=1,
+        le=9,
+        accurate="up",
     )
 
 

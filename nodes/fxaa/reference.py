@@ -29,14 +29,14 @@ def coverage(height: int, width: int, slope: float, offset: float) -> F64:
         return np.where(t <= 0, 0.0, np.where(t >= 1, t - 0.5, 0.5 * t * t))
 
     if slope == 0.0:
-        return np.clip(left, 0.0, 1.0)
+        return np.asarray(np.clip(left, 0.0, 1.0))
     return (integral(right) - integral(left)) / slope
 
 
 def aliased(height: int, width: int, slope: float, offset: float) -> F64:
     """The same half plane with one sample a texel, at its centre."""
     rows, columns = np.mgrid[:height, :width].astype(np.float64)
-    return (rows + 0.5 < offset + slope * (columns + 0.5)).astype(np.float64)
+    return np.asarray(rows + 0.5 < offset + slope * (columns + 0.5), dtype=np.float64)
 
 
 # ---------------------------------------------------------------- the filter

@@ -67,9 +67,7 @@ class Gbuffer(Node[GbufferParams]):
             first = queue == queues[0]
             b.raster(
                 queue,
-                scene_program(
-                    b, "gbuffer.frag", alpha_test=queue == "masked", normal_map=normal_map, defines=defines
-                ),
+                scene_program(b, "gbuffer.frag", alpha_test=queue == "masked", normal_map=normal_map, defines=defines),
                 color=[
                     color(b.output(port), clear=(0.0, 0.0, 0.0, 0.0)) if first else color(b.output(port), load=True)
                     for port in ports

@@ -19,13 +19,23 @@ class ShadowMapParams(Params):
     cascades: int = knob(
         MAX_CASCADES, "Cascades drawn; at most the layers of the map.", ge=1, le=MAX_CASCADES, accurate="up"
     )
-    distance: float = knob(60.0, "View depth at which shadows end; ends with the scene if that is nearer.", unit="m", gt=0)
+    distance: float = knob(
+        60.0, "View depth at which shadows end; ends with the scene if that is nearer.", unit="m", gt=0
+    )
     split: float = knob(0.7, "Split of the range: 0 into equal lengths, 1 into equal ratios of depth.", ge=0.0, le=1.0)
     slope_bias: float = knob(
-        1.5, "Depth added to casters, per texel of depth slope: hides acne, detaches shadows.", unit="texel", ge=0, le=16
+        1.5,
+        "Depth added to casters, per texel of depth slope: hides acne, detaches shadows.",
+        unit="texel",
+        ge=0,
+        le=16,
     )
     normal_bias: float = knob(
-        1.0, "How far receivers move out along their normals; 1 clears the filter exactly.", unit="filter radius", ge=0, le=8
+        1.0,
+        "How far receivers move out along their normals; 1 clears the filter exactly.",
+        unit="filter radius",
+        ge=0,
+        le=8,
     )
 
 
@@ -71,9 +81,7 @@ class ShadowMap(Node[ShadowMapParams]):
         for queue in queues:
             b.raster(
                 queue,
-                scene_program(
-                    b, "<depth_only.frag>", alpha_test=queue == "masked", depth_only=True, layered=True
-                ),
+                scene_program(b, "<depth_only.frag>", alpha_test=queue == "masked", depth_only=True, layered=True),
                 depth=depth(target, clear=1.0) if queue == queues[0] else depth(target, load=True),
                 bind={"Cascades": read_buffer(cascades)},
                 # Both faces cast: light must not enter a room through the back of its walls. Casters in front of a

@@ -102,4 +102,4 @@ def sky(
             disc = covered[..., None] * irradiance / (math.pi * math.sin(sun_radius) ** 2)
     share = smoothstep(-horizon, horizon, directions[..., 1])[..., None]
     ground = np.array(light.ambient_ground)
-    return np.minimum((1 - share) * ground + share * above + disc, CEILING)
+    return np.asarray(np.minimum((1 - share) * ground + share * above + disc, CEILING))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 
@@ -39,7 +41,7 @@ def agx_sigmoid(x: F64) -> F64:
     t, s = np.maximum(-offset, 0.0) * 2 / toe_scale, np.maximum(offset, 0.0) * 2 / shoulder_scale
     toe = -toe_scale * t / np.cbrt(1.0 + t**3)
     shoulder = shoulder_scale * s / (1.0 + s**3.25) ** (1 / 3.25)
-    return 0.5 + np.where(offset < 0.0, toe, shoulder)
+    return np.asarray(0.5 + np.where(offset < 0.0, toe, shoulder))
 
 
 def agx(radiance: F64) -> F64:
@@ -59,7 +61,7 @@ def aces(radiance: F64) -> F64:
 def reinhard(radiance: F64, white: float) -> F64:
     """Reinhard's extended curve on luminance."""
     y = (radiance @ _REC709)[..., None]
-    return np.clip(radiance * (1 + y / white**2) / (1 + y), 0.0, 1.0)
+    return np.asarray(np.clip(radiance * (1 + y / white**2) / (1 + y), 0.0, 1.0))
 
 
 def tonemap(image: npt.NDArray[np.floating], curve: str, gain: float = 1.0, white: float = 4.0) -> F64:
@@ -69,9 +71,13 @@ def tonemap(image: npt.NDArray[np.floating], curve: str, gain: float = 1.0, whit
     """
     radiance = np.nan_to_num(image[..., :3].astype(np.float64), nan=0.0, posinf=3e38, neginf=0.0)
     exposed = np.clip(np.maximum(radiance, 0.0) * gain, 0.0, CEILING)
-    if curve == "reinhard":
-        return srgb_encode(reinhard(exposed, white))
-    return srgb_encode({"agx": agx, "aces": aces, "linear": lambda linear: linear}[curve](exposed))
+    curves: dict[str, Callable[[F64], F64]] = {
+        "agx": agx,
+        "aces": aces,
+        "reinhard": lambda linear: reinhard(linear, white),
+        "linear": lambda linear: linear,
+    }
+    return srgb_encode(curves[curve](exposed))
 
 
 # ---------------------------------------------------------------- dither

@@ -70,6 +70,10 @@ def clear_value(format: str, value: tuple[float, float, float, float]) -> tuple[
         return np.array([int(v) for v in value], np.uint32), e.RGBA_INTEGER, e.UNSIGNED_INT
     if row.channel is Channel.INT:
         return np.array([int(v) for v in value], np.int32), e.RGBA_INTEGER, e.INT
+    if row.channel is Channel.SNORM:  # NVIDIA clamps floating-point clears of these to 0..1
+        layout = transfer(format)
+        most = np.iinfo(layout.dtype).max
+        return np.round(np.clip(value, -1.0, 1.0) * np.float64(most)).astype(layout.dtype), e.RGBA, layout.type
     return np.array(value, np.float32), e.RGBA, e.FLOAT
 
 

@@ -1,9 +1,8 @@
 """The graph file, as pydantic models: names, types, ranges, units, defaults and help of everything outside ``set:``.
 
 Shapes only: what needs other passes, node ports or the disk is checked by ``node_checks.py`` and
-``rendergraph.plan.expand``. Angles are degrees, lengths metres, colours linear Rec. 709.
-
-Validators raise ``mistake(...)``, which names the key to point at, or a row of the message table by its code.
+``rendergraph.plan.expand``. Validators raise ``mistake(...)``, which names the key to point at, or a row of the message
+table by its code.
 """
 
 from __future__ import annotations
@@ -11,63 +10,14 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Discriminator,
-    Field,
-    JsonValue,
-    Tag,
-    model_validator,
-)
+from pydantic import AfterValidator, ConfigDict, Field, JsonValue, model_validator
 from pydantic_core import PydanticCustomError
 
-from rendergraph.document.formats import FORMATS
-from rendergraph.document.suggest import did_you_mean
+from rendergraph.document.field_types import Extent, FormatName, Model, Name, NotBoolean, ResourceName, mistake
+from rendergraph.document.scene_models import SceneModel
 
-MAX_SIZE = 16384
 MAX_FRAMES = 10000
-
 IMAGE_SUFFIXES = (".png", ".exr", ".npy")
-
-
-def mistake(problem: str, hint: str, key: str = "") -> PydanticCustomError:
-    """A validator's error with a help line of its own; ``key`` is the key of the model to point at."""
-    return PydanticCustomError("mistake", "{problem}", {"problem": problem, "hint": hint, "key": key})
-
-
-def _known_format(name: str) -> str:
-    if name not in FORMATS:
-        raise PydanticCustomError("RG303", "unknown format", {"format": name, "hint": did_you_mean(name, FORMATS)})
-    return name
-
-
-def _not_boolean(value: Any) -> Any:
-    if isinstance(value, bool):
-        raise PydanticCustomError("int_type", "not a number")
-    return value
-
-
-#: ``Literal[1]`` alone would take ``true``, which equals 1 in Python.
-_NotBoolean = BeforeValidator(_not_boolean)
-
-Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=64)]
-#: A resource, or a node's internal one: ``light.histogram``.
-ResourceName = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$", max_length=130)]
-Extent = Annotated[int, Field(ge=1, le=MAX_SIZE)]
-Vec3 = tuple[float, float, float]
-Unit = Annotated[float, Field(ge=0, le=1)]
-NonNegative = Annotated[float, Field(ge=0)]
-Rgb = tuple[NonNegative, NonNegative, NonNegative]
-FormatName = Annotated[str, AfterValidator(_known_format), Field(json_schema_extra={"enum": [*sorted(FORMATS)]})]
-
-
-class Model(BaseModel):
-    """Base of the file's models: no unknown keys, no infinities, frozen."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class FrameModel(Model):
@@ -81,140 +31,6 @@ class FrameModel(Model):
     depth: Literal["reversed", "standard"] = Field(
         "reversed", description="Depth convention: reversed (1 near, 0 far; more precise) or standard (0 near, 1 far)."
     )
-
-
-class OrbitModel(Model):
-    """A circular path of the camera around its target."""
-
-    turns: float = Field(1.0, description="Turns over all frames of the run.")
-    axis: Literal["y"] = Field("y", description="Axis of the orbit.")
-
-
-class CameraModel(Model):
-    """A perspective camera: placed by position and target, or taken from the scene file by name."""
-
-    name: str | None = Field(None, description="A camera of the scene file, by node or camera name.")
-    position: Vec3 | None = Field(None, description="Where the eye is.", json_schema_extra={"unit": "m"})
-    target: Vec3 | None = Field(None, description="Point looked at.", json_schema_extra={"unit": "m"})
-    up: Vec3 = Field((0.0, 1.0, 0.0), description="Up direction.")
-    fov: float = Field(60.0, gt=0, lt=180, description="Vertical field of view.", json_schema_extra={"unit": "degrees"})
-    near: float = Field(0.05, gt=0, description="Near plane distance.", json_schema_extra={"unit": "m"})
-    far: float | None = Field(
-        None, gt=0, description="Far plane distance; none for infinity.", json_schema_extra={"unit": "m"}
-    )
-    orbit: OrbitModel | None = Field(None, description="Move on a circle around the target.")
-
-    @model_validator(mode="after")
-    def _consistent(self) -> CameraModel:
-        if self.far is not None and self.far <= self.near:
-            raise mistake(
-                f"far ({self.far:g} m) is not beyond near ({self.near:g} m)", "raise far or lower near", "far"
-            )
-        if self.position is not None and self.position == self.target:
-            raise mistake("position and target are the same point", "move one of them", "target")
-        return self
-
-
-def _not_zero(direction: Vec3) -> Vec3:
-    if not any(direction):
-        raise mistake("a direction cannot be the zero vector", "give it a length; it need not be 1")
-    return direction
-
-
-Direction = Annotated[Vec3, AfterValidator(_not_zero)]
-
-
-class SunModel(Model):
-    """A directional light."""
-
-    direction: Direction = Field((-0.4, -1.0, -0.3), description="Direction the light travels; need not be normalised.")
-    illuminance: NonNegative = Field(5.0, description="Irradiance on a facing surface, in scene-linear units.")
-    color: Rgb = Field((1.0, 0.96, 0.9), description="Linear colour.")
-
-
-class AmbientModel(Model):
-    """A hemisphere of constant light: sky above, ground below."""
-
-    sky: Rgb = Field((0.10, 0.13, 0.18), description="Radiance from above.")
-    ground: Rgb = Field((0.06, 0.055, 0.05), description="Radiance from below.")
-
-
-class PointsModel(Model):
-    """Point lights scattered over the scene's bounds by the seed."""
-
-    count: int = Field(..., ge=0, le=65536, description="Number of lights.")
-    seed: int = Field(0, ge=0, le=2**32 - 1, description="Seed of positions and colours.")
-    intensity: NonNegative = Field(1.0, description="Radiant intensity of each light.")
-    radius: float | None = Field(
-        None, gt=0, description="Reach; none: where the light falls below `cutoff`.", json_schema_extra={"unit": "m"}
-    )
-    cutoff: float = Field(0.02, gt=0, description="Irradiance below which a light without `radius` ends.")
-
-
-class PointModel(Model):
-    """One point light."""
-
-    position: Vec3 = Field(..., description="Position.", json_schema_extra={"unit": "m"})
-    color: Rgb = Field((1.0, 1.0, 1.0), description="Linear colour.")
-    intensity: NonNegative = Field(1.0, description="Radiant intensity.")
-    radius: float = Field(5.0, gt=0, description="Reach: exactly dark beyond.", json_schema_extra={"unit": "m"})
-
-
-class SpotModel(PointModel):
-    """One spot light."""
-
-    direction: Direction = Field((0.0, -1.0, 0.0), description="Axis of the cone.")
-    inner: float = Field(
-        20.0, ge=0, lt=90, description="Half angle of full brightness.", json_schema_extra={"unit": "degrees"}
-    )
-    outer: float = Field(
-        30.0,
-        gt=0,
-        lt=90,
-        description="Half angle beyond which it is exactly dark.",
-        json_schema_extra={"unit": "degrees"},
-    )
-
-    @model_validator(mode="after")
-    def _cone(self) -> SpotModel:
-        if self.inner > self.outer:
-            problem = f"inner ({self.inner:g} degrees) exceeds outer ({self.outer:g})"
-            raise mistake(problem, "inner is the half angle of full brightness, outer the one of darkness", "inner")
-        return self
-
-
-def _light_kind(light: Any) -> str:
-    keys = light if isinstance(light, dict) else ()
-    return "spot" if isinstance(light, SpotModel) or {"direction", "inner", "outer"} & {*keys} else "point"
-
-
-LightModel = Annotated[
-    Annotated[PointModel, Tag("point")] | Annotated[SpotModel, Tag("spot")], Discriminator(_light_kind)
-]
-
-
-class LightsModel(Model):
-    """All lights beside those in the scene file."""
-
-    sun: SunModel | None = Field(None, description="A directional light.")
-    ambient: AmbientModel | None = Field(None, description="A constant hemisphere.")
-    points: PointsModel | None = Field(None, description="Scattered point lights.")
-    list: tuple[LightModel, ...] = Field(
-        (), description="Point and spot lights one by one; one with a direction, inner or outer angle is a spot."
-    )
-    from_scene: bool = Field(True, description="Use the lights of the scene file or procedural scene too.")
-
-
-class SceneModel(Model):
-    """What is drawn: a shipped procedural scene or a glTF file, a camera and lights."""
-
-    source: str = Field(
-        ..., min_length=1, description="`atrium`, `cornell`, `spheres`, or a .gltf/.glb relative to this file."
-    )
-    detail: Unit = Field(1.0, description="Geometric detail of a procedural scene, 0 to 1.")
-    seed: int = Field(0, ge=0, le=2**32 - 1, description="Seed of a procedural scene.")
-    camera: CameraModel = Field(default_factory=lambda: CameraModel(), description="The camera.")
-    lights: LightsModel = Field(default_factory=lambda: LightsModel(), description="The lights.")
 
 
 def _required(*keys: str) -> dict[str, JsonValue]:
@@ -245,7 +61,7 @@ class ResourceModel(Model):
     )
     layers: int = Field(1, ge=1, le=2048, description="Array layers.")
     mips: int = Field(1, ge=0, le=15, description="Mip levels; 0 for the whole chain.")
-    samples: Annotated[Literal[1, 2, 4, 8], _NotBoolean] = Field(1, description="Samples a texel.")
+    samples: Annotated[Literal[1, 2, 4, 8], NotBoolean] = Field(1, description="Samples a texel.")
     bytes: int | None = Field(
         None, ge=4, le=2**31 - 1, multiple_of=4, description="Size of a buffer.", json_schema_extra={"unit": "bytes"}
     )
@@ -332,7 +148,7 @@ class BudgetModel(Model):
 class DocumentModel(Model):
     """A graph file: which passes run, on which resources, and what is written out."""
 
-    rendergraph: Annotated[Literal[1], _NotBoolean] = Field(..., description="Version of the language.")
+    rendergraph: Annotated[Literal[1], NotBoolean] = Field(..., description="Version of the language.")
     title: str = Field("", max_length=200, description="What the graph shows.")
     frame: FrameModel = Field(default_factory=lambda: FrameModel(), description="The frame.")
     scene: SceneModel | None = Field(None, description="What is drawn.")

@@ -10,9 +10,9 @@ from unicodedata import east_asian_width
 
 from rendergraph.document.messages import Diagnostic
 from rendergraph.document.overrides import SET_PREFIX
+from rendergraph.document.yaml_errors import LINE_BREAK
 from rendergraph.plan.graph import Position
 
-_LINE_BREAK = re.compile(r"\r\n|[\n\r\x85\u2028\u2029]")  # as YAML counts lines
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _WIDEST = 160  # characters of a source line shown around the caret
 _LARGEST = 8 << 20  # bytes of a file read for its source line
@@ -29,7 +29,7 @@ def format_diagnostics(diagnostics: Iterable[Diagnostic], sources: Mapping[str, 
     def line_of(at: Position) -> str | None:
         if at.file not in lines:
             text = _text(at.file, sources or {})
-            lines[at.file] = _LINE_BREAK.split(text) if text and "\0" not in text else []  # no frames of binary files
+            lines[at.file] = LINE_BREAK.split(text) if text and "\0" not in text else []  # no frames of binary files
         found = lines[at.file]
         return found[at.line - 1] if 0 < at.line <= len(found) else None
 

@@ -6,7 +6,6 @@ limits stop it early and nothing recurses) and is more than twice as fast. Sourc
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -26,15 +25,14 @@ from yaml.events import (
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.document.positions import Branch, Mark, Place, to_position
+from rendergraph.document.yaml_errors import syntax_error, unprintable
 from rendergraph.document.yaml_scalars import YAML_1_1_BOOLEANS, AmbiguousNumberError, resolve
-from rendergraph.plan.graph import Position
 
 MAX_DEPTH: Final = 64
 MAX_VALUES: Final = 500_000
 _LONG: Final = 64  # characters of text that count as one value more, so that repeated long texts stay bounded too
 
 _LOADER: Final[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_LINE_BREAK = re.compile(r"\r\n|[\n\r\x85\u2028\u2029]")  # as the parser counts lines
 _MERGE: Final = "<<"
 
 
@@ -87,9 +85,9 @@ def read_yaml(data: bytes, file: str) -> Reading:
     except _Stop as stop:
         raise RenderGraphError([*problems, stop.diagnostic]) from None
     except yaml.MarkedYAMLError as error:
-        raise RenderGraphError([*problems, _syntax(error, data, file)]) from None
+        raise RenderGraphError([*problems, syntax_error(error, data, file)]) from None
     except yaml.reader.ReaderError as error:
-        raise RenderGraphError([*problems, _unprintable(error, data, file)]) from None
+        raise RenderGraphError([*problems, unprintable(error, data, file)]) from None
 
 
 class _Stop(Exception):  # noqa: N818
@@ -290,31 +288,3 @@ def _is_text(key: str) -> bool:
 
 def _shown(text: str) -> str:
     return text if len(text) <= 40 else text[:37] + "..."
-
-
-def _syntax(error: yaml.MarkedYAMLError, data: bytes, file: str) -> Diagnostic:
-    mark = error.problem_mark or error.context_mark
-    position = Position(file, 1, 1) if mark is None else to_position(file, mark)
-    problem = ", ".join(part for part in (error.context, error.problem) if part)
-    lines = _LINE_BREAK.split(data.decode("utf-8"))
-    line = lines[position.line - 1] if position.line <= len(lines) else ""
-    hint = "check brackets, quotes, indentation, and that a space follows every colon"
-    if "\t" in line[: max(position.column, len(line) - len(line.lstrip()))]:
-        problem, hint = "a tab where only spaces may stand", "indent with spaces"
-    elif "mapping values are not allowed" in problem:
-        hint = "quote text that holds a colon, or check the indentation of this and the line above"
-    elif "expected ',' or" in problem:
-        opened = f"opened in line {error.context_mark.line + 1} " if error.context_mark else ""
-        hint = f"the bracket {opened}is not closed, or a comma is missing, before this place"
-    return diagnose("RG104", position, problem=problem, hint=hint)
-
-
-def _unprintable(error: yaml.reader.ReaderError, data: bytes, file: str) -> Diagnostic:
-    text = data.decode("utf-8")
-    bad = yaml.reader.Reader.NON_PRINTABLE.search(text)
-    if bad is None:
-        return diagnose("RG104", Position(file, 1, 1), problem=str(error.reason), hint="save the file as plain UTF-8")
-    lines = _LINE_BREAK.split(text[: bad.start()])
-    position = Position(file, len(lines), len(lines[-1]) + 1)
-    problem = f"control character U+{ord(bad[0]):04X}"
-    return diagnose("RG104", position, problem=problem, hint="remove it; a quoted text may write it as an escape")

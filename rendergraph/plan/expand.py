@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from rendergraph.document.field_types import MAX_SIZE
 from rendergraph.document.messages import Diagnostic, RenderGraphError
-from rendergraph.document.models import MAX_FRAMES, MAX_SIZE
+from rendergraph.document.models import MAX_FRAMES
 from rendergraph.plan.build_passes import PassBuilder
 from rendergraph.plan.check_whole import barrier_intents, check_outputs, check_use
 from rendergraph.plan.findings import Findings, SourceDocument

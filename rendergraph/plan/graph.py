@@ -211,7 +211,7 @@ class DrawArrays:
 
     vertices: int
     instances: int = 1
-    topology: str = "triangles"  # triangles | triangle_strip | lines | line_strip | points
+    topology: str = "triangles"  # triangles | triangle_strip | lines | line_strip | points | patches (of 3 vertices)
 
 
 @dataclass(frozen=True, slots=True)

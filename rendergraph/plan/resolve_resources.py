@@ -13,8 +13,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from rendergraph.document.field_types import MAX_SIZE
 from rendergraph.document.formats import REAL
-from rendergraph.document.models import MAX_SIZE, ResourceModel
+from rendergraph.document.models import ResourceModel
 from rendergraph.document.suggest import did_you_mean
 from rendergraph.plan.findings import Findings
 from rendergraph.plan.graph import BufferDesc, Frame, Kind, Resource, Target, TextureDesc

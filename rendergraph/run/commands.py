@@ -179,8 +179,9 @@ class CommandBuilder:
             self._recorder.call(gl.glDrawArraysInstanced, mode, 0, vertices, instances)
 
     def _draw_scene(self, subpass: SubPass, work: DrawScene) -> None:
-        geometry = self._geometry
+        geometry, program = self._geometry, subpass.program
         assert geometry is not None, "plan_document refuses scene draws without a scene"
+        tessellated = program is not None and any(stage == "tess_evaluation" for stage, _ in program.stages)
         self._vertex_array(geometry.vertex_array(self._programs[subpass.name]))
         # An indirect draw of this frame's own arguments may have bound another buffer.
         self._recorder.call(geometry.bind_commands)
@@ -188,7 +189,7 @@ class CommandBuilder:
             for batch in geometry.batches[queue, work.instances]:
                 self._recorder.cull("none" if batch.double_sided else work.cull)
                 self._recorder.front_face(batch.mirrored)
-                self._recorder.call(geometry.draw, batch)
+                self._recorder.call(geometry.draw, batch, tessellated)
         self._recorder.front_face(False)
 
     def _vertex_array(self, array: int) -> None:

@@ -112,12 +112,11 @@ class SceneGeometry:
         """Make the scene's draw commands the source of indirect draws."""
         self._gl.glBindBuffer(enums.DRAW_INDIRECT_BUFFER, self._commands.glo)
 
-    def draw(self, batch: Batch) -> None:
-        """Issue a batch with the state that is bound."""
+    def draw(self, batch: Batch, patches: bool = False) -> None:
+        """Issue a batch with the state that is bound; ``patches`` of three vertices feed tessellation shaders."""
+        mode = enums.PATCHES if patches else enums.TRIANGLES
         offset = self._frame_offset + batch.first * COMMAND_BYTES
-        self._gl.glMultiDrawElementsIndirect(
-            enums.TRIANGLES, enums.UNSIGNED_INT, offset, batch.count, COMMAND_BYTES
-        )
+        self._gl.glMultiDrawElementsIndirect(mode, enums.UNSIGNED_INT, offset, batch.count, COMMAND_BYTES)
 
     # ---- vertex arrays
 

@@ -6,8 +6,8 @@ import time
 from dataclasses import dataclass, replace
 
 from rendergraph.document.load import Document
-from rendergraph.document.overrides import SET_PREFIX
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
+from rendergraph.document.overrides import SET_PREFIX
 from rendergraph.plan.compile import compile_plan
 from rendergraph.plan.expand import expand
 from rendergraph.plan.graph import DrawScene
@@ -56,7 +56,7 @@ def plan_document(
 
 
 def _load(document: Document, source: str | None) -> LoadedScene | None:
-    from rendergraph.document.models import SceneModel
+    from rendergraph.document.scene_models import SceneModel
 
     model = document.model.scene
     if model is None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
-from rendergraph.document.models import CameraModel, LightsModel, PointsModel, SceneModel, SpotModel
+from rendergraph.document.scene_models import CameraModel, LightsModel, PointsModel, SceneModel, SpotModel
 from rendergraph.document.suggest import closest, did_you_mean
 from rendergraph.plan.graph import Position
 from rendergraph.scene import procedural
@@ -55,16 +55,16 @@ def load_scene(
     """Load ``model.source``: a shipped scene's name, or a glTF file relative to ``folder``.
 
     ``source_override`` replaces it and is relative to the working directory; where it names another scene, the model's
-    camera placement, which was made for the first one, is left out unless ``keep_camera``. ``frame_seed`` seeds what the model does not seed
-    itself. ``position`` is where the source is written, ``camera_position`` the camera. ``RenderGraphError`` RG650 for
-    an unknown source, RG651 for an unreadable path, RG652 for an unknown camera, RG653 for a camera that looks nowhere,
-    and what ``load_gltf`` raises.
+    camera placement, which was made for the first one, is left out unless ``keep_camera``. ``frame_seed`` seeds what
+    the model does not seed itself. ``position`` is where the source is written, ``camera_position`` the camera.
+    ``RenderGraphError`` RG650 for an unknown source, RG651 for an unreadable path, RG652 for an unknown camera, RG653
+    for a camera that looks nowhere, and what ``load_gltf`` raises.
     """
     source = source_override if source_override is not None else model.source
     notes: list[Diagnostic] = []
     camera_model = model.camera
     moved = source != model.source and not keep_camera
-    if moved and {"name", "position", "target", "near", "far"} & camera_model.model_fields_set:
+    if moved and {"name", "position", "target", "up", "near", "far"} & camera_model.model_fields_set:
         camera_model = CameraModel(**camera_model.model_dump(include={"fov", "orbit"}, exclude_unset=True))
         notes.append(diagnose("RG655", camera_position, source=model.source, override=source))
     scene_seed = model.seed if "seed" in model.model_fields_set else frame_seed

@@ -10,7 +10,7 @@ from rendergraph.scene.scene import F64, Light
 
 #: The plastic number's 3D relative: increments of the R3 sequence (Roberts 2018, "The unreasonable effectiveness of
 #: quasirandom sequences").
-_R3 = 1.2207440846057596 ** -np.arange(1.0, 4.0)
+_R3 = np.array([1.2207440846057596**-k for k in (1, 2, 3)])
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 _NEAREST = 0.01  # metres: a light always reaches a little
 
@@ -20,8 +20,8 @@ def scatter_lights(
 ) -> list[Light]:
     """``count`` point lights spread evenly over the box ``low``..``high`` (metres), in saturated, distinct hues.
 
-    Without a ``radius`` a light reaches as far as its irradiance ``intensity / distance^2`` exceeds ``cutoff``. A larger
-    count keeps the first lights where and as they were. Every light's brightest channel is ``intensity``.
+    Without a ``radius`` a light reaches as far as its irradiance ``intensity / distance^2`` exceeds ``cutoff``. A
+    larger count keeps the first lights where and as they were. Every light's brightest channel is ``intensity``.
     """
     rng = np.random.default_rng(seed)
     shift, hue_shift = rng.random(3), rng.random()
@@ -40,4 +40,4 @@ def _saturated(hue: F64, saturation: F64) -> F64:
     wheel = np.abs((hue[:, None] * 6.0 + np.array([0.0, 4.0, 2.0])) % 6.0 - 3.0) - 1.0
     pure: F64 = np.clip(wheel, 0.0, 1.0)
     mixed: F64 = 1.0 - saturation[:, None] * (1.0 - pure)
-    return mixed / mixed.max(axis=1, keepdims=True)
+    return np.asarray(mixed / mixed.max(axis=1, keepdims=True))

@@ -8,7 +8,7 @@ import pytest
 
 from rendergraph.device import enums as e
 from rendergraph.device.clock import RING, Clock, FinishWallClock, TimestampClock, choose_clock
-from rendergraph.device.clock_proof import ClockProof, agree, prove_clock
+from rendergraph.device.clock_proof import ABSOLUTE_TOLERANCE_NS, ClockProof, agree, prove_clock
 from rendergraph.device.context import Device
 from rendergraph.device.framebuffers import create_framebuffer, destroy_framebuffer
 from rendergraph.device.textures import create_texture, destroy_texture
@@ -21,8 +21,7 @@ UNPROVEN = ClockProof("agree", 64)
 def test_the_proof_rejects_a_lying_timer(device: Device) -> None:
     clock = choose_clock(device)
     proof = clock.proof
-    assert proof.raster_wall_ns > 1_000_000
-    assert proof.compute_wall_ns > 1_000_000
+    assert min(proof.raster_wall_ns, proof.compute_wall_ns) > 2 * ABSOLUTE_TOLERANCE_NS, "too short to prove anything"
     if device.info.is_software:
         assert clock.name == "finish_wall"
         assert proof.reason == "disagree"

@@ -164,7 +164,10 @@ def test_attenuation_matches_float64(device: Device, tmp_path: Path) -> None:
 def test_a_light_is_exactly_dark_at_its_radius_and_outside_its_cone(device: Device, tmp_path: Path) -> None:
     reach = np.float32([0.001, 0.1, 1.0, 3.3, 7.0, 1e3, 1e6])
     at = [[r, r, 0.5, 0.9, 0.5] for r in reach]
-    beyond = [[np.nextafter(r, np.float32(np.inf)) * 1.01, r, np.nextafter(np.float32(0.5), np.float32(0)), 0.9, 0.5] for r in reach]
+    beyond = [
+        [np.nextafter(r, np.float32(np.inf)) * 1.01, r, np.nextafter(np.float32(0.5), np.float32(0)), 0.9, 0.5]
+        for r in reach
+    ]
     inside = [[r * np.float32(0.9), r, 0.51, 0.9, 0.5] for r in reach]
     result = attenuate(device, tmp_path, np.array(at + beyond))
     assert (result == 0).all()
@@ -172,7 +175,9 @@ def test_a_light_is_exactly_dark_at_its_radius_and_outside_its_cone(device: Devi
 
 
 def test_attenuation_extremes_are_finite(device: Device, tmp_path: Path) -> None:
-    rows = np.array([[0, 1, 1, 1, 1], [0, 0, 1, 1, 1], [1e-20, 1e-20, 1, 0.5, 0.5], [1e18, 1e19, -1, 1, 1], [0, 1e6, 1, 1, 0.999]])
+    rows = np.array(
+        [[0, 1, 1, 1, 1], [0, 0, 1, 1, 1], [1e-20, 1e-20, 1, 0.5, 0.5], [1e18, 1e19, -1, 1, 1], [0, 1e6, 1, 1, 0.999]]
+    )
     result = attenuate(device, tmp_path, rows)
     assert np.isfinite(result).all()
     assert result[0, 0] == pytest.approx(1e4)  # the light at the surface: 1 / d0^2

@@ -98,9 +98,12 @@ def test_normal_survives_its_format(device: Device, tmp_path: Path, format: str)
 
 def test_sign_of_zero_breaks_the_fold(device: Device, tmp_path: Path) -> None:
     """The twin of the octahedral test: with sign(0) = 0 the -z pole and the folded axes come out elsewhere."""
-    bad = PACK.replace("out_packed = pack_normal(n);", """
+    bad = PACK.replace(
+        "out_packed = pack_normal(n);",
+        """
     vec3 p = n / (abs(n.x) + abs(n.y) + abs(n.z));
-    out_packed = vec4((p.z >= 0.0 ? p.xy : (1.0 - abs(p.yx)) * sign(p.xy)) * 0.5 + 0.5, 0.0, 0.0);""")
+    out_packed = vec4((p.z >= 0.0 ? p.xy : (1.0 - abs(p.yx)) * sign(p.xy)) * 0.5 + 0.5, 0.0, 0.0);""",
+    )
     assert packing_error(tmp_path, "rg16", bad).max() > 45.0
 
 
@@ -164,7 +167,9 @@ def test_depth_reconstruction_error(device: Device, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("convention", "far"), [("reversed", None), ("standard", 100.0), ("standard", None)])
-def test_cleared_depth_is_background_and_finite(device: Device, tmp_path: Path, convention: str, far: float | None) -> None:
+def test_cleared_depth_is_background_and_finite(
+    device: Device, tmp_path: Path, convention: str, far: float | None
+) -> None:
     cleared = 0.0 if convention == "reversed" else 1.0
     frame, camera = Frame(64, 64, depth=convention), Camera((0, 0, 0), (0, 0, -1), near=0.1, far=far)
     body = DEPTH.replace("outputs[o] = view_z(inputs[i]);", "outputs[o] = is_background(inputs[i]) ? 1.0 : 0.0;")
@@ -206,7 +211,14 @@ SQUARE = Quad((-1, -1, 0), (2, 0, 0), (0, 2, 0))
 CENTRE = (32, 32)
 
 
-def fill(device: Device, folder: Path, quads: list[Quad], *materials: Material, images: tuple[Image, ...] = (), prepass: str = "off"):  # type: ignore[no-untyped-def]
+def fill(
+    device: Device,
+    folder: Path,
+    quads: list[Quad],
+    *materials: Material,
+    images: tuple[Image, ...] = (),
+    prepass: str = "off",
+):  # type: ignore[no-untyped-def]
     scene = quad_scene(quads, materials, images=images)
     return render_scene(device, folder, SURFACES.replace("PREPASS", prepass), scene, FACING).images
 
@@ -239,13 +251,25 @@ def test_mirrored_instance_keeps_its_side_and_its_normal_map(device: Device, tmp
     lean = Image(np.full((4, 4, 4), (230, 128, 205, 255), dtype=np.uint8), srgb=False)
     material = Material(normal_texture=TextureUse(0))
     plain = fill(device, tmp_path, [SQUARE], material, images=(lean,))["normal"][CENTRE]
-    mirrored = fill(device, tmp_path, [Quad(SQUARE.corner, SQUARE.u, SQUARE.v, world=np.diag([-1.0, 1, 1, 1]))], material, images=(lean,))
+    mirrored = fill(
+        device,
+        tmp_path,
+        [Quad(SQUARE.corner, SQUARE.u, SQUARE.v, world=np.diag([-1.0, 1, 1, 1]))],
+        material,
+        images=(lean,),
+    )
     expected = np.array([230, 128, 205]) / 255 * 2 - 1
     expected /= np.linalg.norm(expected)
     assert plain[:3] == pytest.approx(expected, abs=1e-3)
     assert mirrored["normal"][CENTRE][:3] == pytest.approx(expected * (-1, 1, 1), abs=1e-3)
     upward = Image(np.full((4, 4, 4), (128, 230, 205, 255), dtype=np.uint8), srgb=False)
-    mirrored = fill(device, tmp_path, [Quad(SQUARE.corner, SQUARE.u, SQUARE.v, world=np.diag([-1.0, 1, 1, 1]))], material, images=(upward,))
+    mirrored = fill(
+        device,
+        tmp_path,
+        [Quad(SQUARE.corner, SQUARE.u, SQUARE.v, world=np.diag([-1.0, 1, 1, 1]))],
+        material,
+        images=(upward,),
+    )
     assert mirrored["normal"][CENTRE][:3] == pytest.approx((-expected[1], expected[0], expected[2]), abs=1e-4)
 
 
@@ -261,7 +285,9 @@ def test_normal_map_strength_and_missing_tangents(device: Device, tmp_path: Path
 
 def test_non_uniform_scale_tilts_normals_the_right_way(device: Device, tmp_path: Path) -> None:
     slope = Quad((-1, -1, 0), (2, 0, 0), (0, 2, -2))
-    images = fill(device, tmp_path, [Quad(slope.corner, slope.u, slope.v, world=np.diag([1.0, 1.0, 0.1, 1.0]))], Material())
+    images = fill(
+        device, tmp_path, [Quad(slope.corner, slope.u, slope.v, world=np.diag([1.0, 1.0, 0.1, 1.0]))], Material()
+    )
     normal = np.cross((2, 0, 0), (0, 2, -0.2))
     assert images["normal"][CENTRE][:3] == pytest.approx(normal / np.linalg.norm(normal), abs=1e-5)
 
@@ -357,4 +383,6 @@ def test_textures_multiply_factors(device: Device, tmp_path: Path) -> None:
     result = fill(device, tmp_path, [SQUARE], material, images=images)
     roughness, metallic, occlusion = 0.5 * 128 / 255, 0.5 * 64 / 255, 1 + 0.5 * (51 / 255 - 1)
     assert result["material"][CENTRE][:3] == pytest.approx((roughness, metallic, occlusion), abs=2e-3)
-    assert result["emissive"][CENTRE][:3] == pytest.approx((2.0, 2.0 * ((188 / 255 + 0.055) / 1.055) ** 2.4, 0.0), abs=1e-2)
+    assert result["emissive"][CENTRE][:3] == pytest.approx(
+        (2.0, 2.0 * ((188 / 255 + 0.055) / 1.055) ** 2.4, 0.0), abs=1e-2
+    )

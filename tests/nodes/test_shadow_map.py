@@ -43,7 +43,7 @@ outputs:
   depth: {file: depth.npy}
 """
 DIFFUSE = Material(base_color=(1, 1, 1, 1), metallic=0.0, roughness=1.0, double_sided=True)
-SUN = Sun((0.35, -1.0, 0.2), (1.0, 1.0, 1.0))
+SUN = Sun((0.35, -1.0, -0.6), (1.0, 1.0, 1.0))
 CAMERA = Camera((0, 4, 6), (0, 0, 0), near=0.1, far=40.0)
 
 
@@ -63,7 +63,9 @@ def table() -> Scene:
     return quad_scene([floor, slab, wall], [DIFFUSE], sun=SUN)
 
 
-def shadow_truth(scene: Scene, camera: Camera, depth: np.ndarray, convention: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def shadow_truth(
+    scene: Scene, camera: Camera, depth: np.ndarray, convention: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Pixels with a surface (rows, columns), and whether the sun's rays reach them."""
     height, width = depth.shape
     view = camera_view(camera, Frame(width, height, depth=convention))
@@ -72,8 +74,10 @@ def shadow_truth(scene: Scene, camera: Camera, depth: np.ndarray, convention: st
     clip = np.column_stack([ndc, depth[rows, columns], np.ones(len(rows))])
     world = clip @ np.linalg.inv(view.projection @ view.view).T
     towards = -np.array(SUN.direction) / np.linalg.norm(SUN.direction)
-    return rows, columns, reference.visible(
-        reference.world_triangles(scene), world[:, :3] / world[:, 3:], towards, offset=2e-3
+    return (
+        rows,
+        columns,
+        reference.visible(reference.world_triangles(scene), world[:, :3] / world[:, 3:], towards, offset=2e-3),
     )
 
 
@@ -92,7 +96,19 @@ def wrong_share(device: Device, folder: Path, scene: Scene, **values: object) ->
 def replace_sun(scene: Scene) -> Scene:
     """The scene without its sun."""
     copied = quad_scene([Quad((0, 0, 0), (1, 0, 0), (0, 1, 0))], [DIFFUSE])
-    for name in ("positions", "normals", "tangents", "uv0", "uv1", "colors", "indices", "meshes", "instances", "materials", "images"):
+    for name in (
+        "positions",
+        "normals",
+        "tangents",
+        "uv0",
+        "uv1",
+        "colors",
+        "indices",
+        "meshes",
+        "instances",
+        "materials",
+        "images",
+    ):
         setattr(copied, name, getattr(scene, name))
     return copied
 
@@ -163,7 +179,9 @@ def test_backs_of_walls_cast(device: Device, tmp_path: Path) -> None:
 # ---------------------------------------------------------------- cascades
 
 
-def cascades(device: Device, folder: Path, camera: Camera, settings: str = "", layers: int = 4) -> dict[str, np.ndarray]:
+def cascades(
+    device: Device, folder: Path, camera: Camera, settings: str = "", layers: int = 4
+) -> dict[str, np.ndarray]:
     text = graph(SHADOW_SET=settings, LAYERS=layers)
     raw = render_scene(device, folder, text, table(), camera, captures=("cascades",)).captures["cascades"]
     data = np.frombuffer(np.asarray(raw).tobytes(), dtype=np.float32)
@@ -208,7 +226,7 @@ def test_shadows_stay_on_their_texels_when_the_camera_moves(device: Device, tmp_
     for moved in (
         replace(base, target=(0.3, 0.6, 0.1)),
         replace(base, position=(0.013, 2.0, 3.0), target=(0.013, 0.5, 0.0)),
-        replace(base, position=(0.2, 2.1, 2.95), target=(0.1, 0.5, 0.0)),
+        replace(base, position=(0.231, 2.1, 2.95), target=(0.1, 0.5, 0.0)),
     ):
         second = cascades(device, tmp_path, moved, "distance: 12")
         assert (second["texel"] == first["texel"]).all()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -89,9 +90,7 @@ def test_framed_scene_is_wholly_visible(size, aspect):
     low, high = (-size, 0.0, size), (3 * size, size, 2 * size)
     camera = frame_scene(box_scene(low, high))
     to_clip = projection_matrix(camera, aspect) @ view_matrix(camera)
-    corners = np.array(
-        [apply(to_clip, (x, y, z)) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
-    )
+    corners = np.array([apply(to_clip, corner) for corner in product(*zip(low, high, strict=True))])
     assert (np.abs(corners[:, :2]) <= 1).all()
     assert np.abs(corners[:, :2]).max() > 0.4  # not lost in the distance
     assert (corners[:, 2] > 0).all()

@@ -311,7 +311,8 @@ def test_too_many_instances(tiny, monkeypatch):
     "uri",
     [
         "../secret.bin", "a/../../secret.bin", "%2e%2e/secret.bin", "%2e%2e%2fsecret.bin", "/etc/passwd",
-        "%2Fetc/passwd", "\\\\host\\share", "file:///etc/passwd", "http://example.org/a.bin", "HTTPS://example.org", "c:/a.bin",
+        "%2Fetc/passwd", "\\\\host\\share", "file:///etc/passwd", "http://example.org/a.bin",
+        "HTTPS://example.org", "c:/a.bin",
         "data:application/octet-stream;base64,@@@",
         "data:no-comma", "", ".", "..", "a%00b.bin", "link.bin", "loop.bin",
     ],
@@ -349,3 +350,27 @@ def test_missing_directory_and_short_buffer_files(tiny):
         assert code_of(tiny.load_text)[0] == code
     tiny.json["buffers"] = [{"byteLength": len(tiny.data)}]  # a .gltf has no binary chunk to stand in
     assert code_of(tiny.load_text)[0] == "RG605"
+
+
+def test_many_accessors_over_the_same_bytes(tiny, monkeypatch):
+    monkeypatch.setattr("rendergraph.scene.gltf.accessors.MAX_DECODED_BYTES", 100)
+    tiny.triangle()  # 36 bytes of positions
+    assert tiny.load().triangles == 1
+    sampler = {"input": tiny.accessor([0.0, 1.0]), "output": tiny.accessor([[0, 0, 0]] * 2)}
+    channels = [{"sampler": 0, "target": {"node": 0, "path": "scale"}}] * 3
+    tiny.append("animations", {"channels": channels, "samplers": [sampler]})
+    assert code_of(tiny.load)[0] == "RG617"
+
+
+def test_flat_shading_counts_a_vertex_for_every_corner(tiny, monkeypatch):
+    monkeypatch.setattr("rendergraph.scene.gltf.meshes.MAX_VERTICES", 5)
+    tiny.triangle()["indices"] = tiny.accessor([0, 1, 2, 0, 1, 2], "u1")
+    assert code_of(tiny.load)[0] == "RG617"
+    tiny.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = tiny.accessor([[0, 0, 1]] * 3)
+    assert tiny.load().triangles == 2
+
+
+def test_buffers_too_large_together(tiny, monkeypatch):
+    tiny.triangle()
+    monkeypatch.setattr("rendergraph.scene.gltf.document.MAX_FILE", len(tiny.data) - 1)
+    assert code_of(tiny.load)[0] == "RG617"

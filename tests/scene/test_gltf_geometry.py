@@ -110,7 +110,7 @@ def test_sparse(tiny, base):
         ("u2", 65535, False, 1),
         ("i1", -128, False, 1),
         ("i2", -32768, False, 1),
-    ],  # fmt: skip
+    ],
 )
 def test_quantised_positions(tiny, dtype, largest, normalized, scale):
     """KHR_mesh_quantization; elements padded to four bytes, as the stride rule asks."""

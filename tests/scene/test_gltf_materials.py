@@ -215,7 +215,7 @@ def test_unusable_images_are_refused_by_their_header(content, code):
 @pytest.mark.parametrize("format", ["PNG", "JPEG"])
 def test_corrupt_image_data(format):
     content = encode("RGB", (1, 2, 3), format, (64, 64))
-    for damaged in (content[: len(content) // 2], content[:40] + bytes(40) + content[80:]):
+    for damaged in (content[: len(content) // 2], content[:20] + bytes(40) + content[60:]):
         with pytest.raises(RenderGraphError) as caught:
             EncodedImage(damaged, "here").decode()
         assert caught.value.diagnostics[0].code == "RG613"

@@ -14,7 +14,7 @@ def grid(columns, rows):
     """Parameters of a grid of vertices float32[n, 2] in 0..1, and its triangles, counter-clockwise seen from +z."""
     u, v = np.meshgrid(np.linspace(0, 1, columns + 1), np.linspace(0, 1, rows + 1))
     corner = (np.arange(columns) + (columns + 1) * np.arange(rows)[:, None]).reshape(-1, 1)
-    quads = corner + [0, 1, columns + 2, columns + 1]
+    quads = corner + np.array([0, 1, columns + 2, columns + 1])
     triangles = quads[:, [0, 1, 2, 0, 2, 3]].astype(np.uint32)
     return np.stack([u.ravel(), v.ravel()], axis=1).astype(np.float32), triangles.reshape(-1)
 

@@ -43,14 +43,14 @@ def test_size_class(size, expected):
 
 
 def test_classes_merge_upward_until_eight_are_left():
-    """Eleven classes: the three cheapest moves upward are those of the smallest sizes of either encoding."""
+    """Eleven classes: 1 to 2 is cheapest, for either encoding; then 2 to 4, and the first of equals."""
     colour = [(2**k, 2**k, True) for k in range(6)]
     data = [(2**k, 2**k, False) for k in range(5)]
     placement = place_textures(scene_with(*colour, *data))
     assert len(placement.arrays) == MAX_ARRAYS
     assert [(a.size, a.srgb, len(a.images)) for a in placement.arrays] == [
-        (4, True, 3), (8, True, 1), (16, True, 1), (32, True, 1),
-        (2, False, 2), (4, False, 1), (8, False, 1), (16, False, 1),
+        (2, True, 2), (4, True, 1), (8, True, 1), (16, True, 1), (32, True, 1),
+        (4, False, 3), (8, False, 1), (16, False, 1),
     ]  # fmt: skip
     assert len({placement.ref(i) for i in range(11)}) == 11
 

@@ -27,8 +27,10 @@ QUANTIZED = (5120, 5121, 5122, 5123, 5126)
 SIGNED = (5120, 5122, 5126)
 UNSIGNED = (5121, 5123, 5126)
 
-#: An accessor may claim any count without a single byte behind it (no buffer view: zeros).
+#: An accessor may claim any count without a single byte behind it (no buffer view: zeros)...
 MAX_COUNT = 2**24
+#: ...and any number of them may read the same bytes: this bounds what all decode to.
+MAX_DECODED_BYTES = 2**31
 #: Beyond this, squares and products of coordinates leave float32.
 MAX_MAGNITUDE = 1e18
 
@@ -38,6 +40,7 @@ class Accessors:
 
     def __init__(self, document: Document) -> None:
         self._document = document
+        self._decoded_bytes = 0
 
     def count(self, where: Item) -> int:
         """How many elements the accessor referred to has."""
@@ -87,6 +90,10 @@ class Accessors:
             raise gltf_error("RG608", str(where), got=got, expected=f"{' or '.join(types)} of {names}")
         count = accessor.require("count").as_integer(1, MAX_COUNT)
         dtype, width = COMPONENTS[component], WIDTHS[kind]
+        self._decoded_bytes += count * width * 4
+        if self._decoded_bytes > MAX_DECODED_BYTES:
+            what = "bytes of decoded accessors"
+            raise gltf_error("RG617", str(where), what=what, count=self._decoded_bytes, limit=MAX_DECODED_BYTES)
         view = self._document.index(accessor, "bufferView", "bufferViews")
         if view is None:
             values: npt.NDArray[Any] = np.zeros((count, width), dtype)

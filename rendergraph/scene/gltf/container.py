@@ -41,7 +41,7 @@ def read_container(path: Path) -> tuple[Item, bytes | None]:
 
     ``RenderGraphError``: RG601 unreadable, RG602 not glTF, RG603 broken JSON.
     """
-    file = path.name
+    file = path.name or str(path)
     content = read_file(path, file)
     if content[:4] == b"glTF":
         text, chunk = _split_glb(content, file)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rendergraph.scene.gltf.container import read_container
+from rendergraph.scene.gltf.container import MAX_FILE, read_container
 from rendergraph.scene.gltf.items import Item, gltf_error, printable
 from rendergraph.scene.gltf.uris import read_uri
 
@@ -27,7 +27,7 @@ class Document:
     """The parsed file. ``RenderGraphError`` from the constructor: RG601-RG605, RG612, RG616."""
 
     def __init__(self, path: Path) -> None:
-        self.file = path.name
+        self.file = path.name or str(path)
         self.folder = path.parent
         self.notes: list[str] = []
         self.root, self._chunk = read_container(path)
@@ -81,6 +81,9 @@ class Document:
                 content = self._chunk
             else:
                 raise gltf_error("RG605", str(buffer), name="uri")
+            total = length + sum(len(other) for other in self._buffers.values())
+            if total > MAX_FILE:
+                raise gltf_error("RG617", str(buffer), what="bytes of all buffers", count=total, limit=MAX_FILE)
             if len(content) < length:
                 raise gltf_error("RG607", str(buffer), start=0, end=length, what="its data", size=len(content))
             self._buffers[index] = content[:length]

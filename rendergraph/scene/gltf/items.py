@@ -9,7 +9,7 @@ from rendergraph.document.messages import RenderGraphError, diagnose
 
 FLOAT_MAX = 3.4e38  # what float32, and so the GPU, can hold
 
-_JSON_NAMES = {dict: "an object", list: "an array", str: "a string", bool: "a boolean", type(None): "null"}
+_JSON_NAMES = {dict: "an object", list: "an array", bool: "a boolean", type(None): "null"}
 
 
 def gltf_error(code: str, where: str, **data: Any) -> RenderGraphError:
@@ -42,7 +42,10 @@ class Item:
 
     def wrong(self, expected: str) -> RenderGraphError:
         """The error for a value of another type or range."""
-        got = _JSON_NAMES.get(type(self.value)) or str(self.value)[:40]
+        if isinstance(self.value, str):
+            got = f"'{printable(self.value)[:40]}'"
+        else:
+            got = _JSON_NAMES.get(type(self.value)) or str(self.value)[:40]
         return gltf_error("RG604", str(self), expected=expected, got=got)
 
     # ---- structure

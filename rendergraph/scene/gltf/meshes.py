@@ -69,8 +69,8 @@ class MeshPool:
             return None
         geometry = self._geometries[place[0]]
         low, high = geometry.positions.min(axis=0), geometry.positions.max(axis=0)
-        bounds = tuple(tuple(float(v) for v in corner) for corner in (low, high))
-        self.meshes.append(Mesh(place[1], len(geometry.indices), place[2], material, *bounds))  # type: ignore[arg-type]
+        bounds = (float(low[0]), float(low[1]), float(low[2])), (float(high[0]), float(high[1]), float(high[2]))
+        self.meshes.append(Mesh(place[1], len(geometry.indices), place[2], material, *bounds))
         return len(self.meshes) - 1
 
     def _place(self, primitive: Item, normal_map: TextureUse | None) -> tuple[int, int, int] | None:
@@ -98,9 +98,17 @@ class MeshPool:
     def _check_size(self, primitive: Item, attributes: Item) -> None:
         """Before decoding: a small file can refer to the same data, or to none, any number of times."""
         position, indices = attributes.get("POSITION"), primitive.get("indices")
-        vertices = self._vertices + (0 if position is None else self._accessors.count(position))
-        count = self._indices + (0 if indices is None else self._accessors.count(indices))
-        for what, number, limit in (("vertices", vertices, MAX_VERTICES), ("indices", count, MAX_INDICES)):
+        vertices = 0 if position is None else self._accessors.count(position)
+        corners = vertices if indices is None else self._accessors.count(indices)
+        if primitive.integer("mode", 4) > 4:
+            corners *= 3  # strips and fans: a triangle an index
+        if attributes.get("NORMAL") is None:
+            vertices = corners  # flat normals: a vertex a corner
+        sizes = (
+            ("vertices", self._vertices + vertices, MAX_VERTICES),
+            ("indices", self._indices + corners, MAX_INDICES),
+        )
+        for what, number, limit in sizes:
             if number > limit:
                 raise gltf_error("RG617", str(primitive), what=what, count=number, limit=limit)
 

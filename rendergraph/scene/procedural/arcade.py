@@ -32,7 +32,7 @@ def column(height: float, radius: float, detail: float, *, fluted: bool) -> Geom
         [(r * 1.06, 0.37), (r * 1.06, 0.40)],
     ]
     neck, bell_top, abacus = top - 0.52, top - 0.14, 0.14
-    around = even_segments(detail, 8, 40)
+    around = even_segments(detail, 6, 40)
     solid = [
         block((wide, 0.14, wide), (0.0, 0.07, 0.0), 0.012 if detail > 0.15 else 0.0),
         lathe(base, around),
@@ -61,16 +61,12 @@ def _hollow(low: float, high: float, y0: float, y1: float, detail: float) -> lis
 
 def _shaft(radius: float, y0: float, y1: float, detail: float, fluted: bool) -> Geometry:
     """A shaft with entasis; flutes run out near both ends, where the grid can show them."""
-    t = np.linspace(0.0, 1.0, segments(detail, 2, 11))
-    swell = radius * (1.0 - 0.16 * t**1.8)
-    profile = np.stack([swell, y0 + (y1 - y0) * t], axis=1)
-    around = segments(detail, 8, 32)
+    around = even_segments(detail, 6, 32)
     per_flute = segments(detail, 0, 6)
     if not fluted or per_flute < 3:
-        return lathe([profile], around)
+        return lathe([_tapering(radius, y0, y1, np.linspace(0.0, 1.0, segments(detail, 2, 11)))], around)
     ends = np.array([0.0, 0.03, 0.06])
     t = np.unique(np.concatenate([ends, 1.0 - ends, np.linspace(0.06, 0.94, segments(detail, 2, 6))]))
-    profile = np.stack([radius * (1.0 - 0.16 * t**1.8), y0 + (y1 - y0) * t], axis=1)
 
     def flutes(angle: F64, y: F64) -> F64:
         place = angle * _FLUTES / (2.0 * np.pi) % 1.0
@@ -78,12 +74,17 @@ def _shaft(radius: float, y0: float, y1: float, detail: float, fluted: bool) -> 
         depth = np.clip((np.minimum(y - y0, y1 - y) / (y1 - y0) - 0.02) / 0.035, 0.0, 1.0)
         return 1.0 - 0.085 * scoop * depth
 
-    return lathe([profile], per_flute * _FLUTES, flutes)
+    return lathe([_tapering(radius, y0, y1, t)], per_flute * _FLUTES, flutes)
+
+
+def _tapering(radius: float, y0: float, y1: float, t: F64) -> F64:
+    """The profile of a shaft at shares ``t`` of its height: float64[k, 2]."""
+    return np.stack([radius * (1.0 - 0.16 * t**1.8), y0 + (y1 - y0) * t], axis=1)
 
 
 def _capital(radius: float, y0: float, y1: float, detail: float) -> Geometry:
     """A bell with two tiers of eight leaves that curl outwards."""
-    around, rows = even_segments(detail, 8, 80), segments(detail, 3, 16)
+    around, rows = even_segments(detail, 6, 80), segments(detail, 1, 16)
     t = np.linspace(0.0, 1.0, rows + 1)
     bell = radius * (1.0 + 0.62 * t**2.2)
     profile = np.stack([bell, y0 + (y1 - y0) * t], axis=1)
@@ -107,7 +108,7 @@ def _curl(t: F64, start: float, end: float) -> F64:
 
 def arch_ring(detail: float) -> Geometry:
     """Voussoirs with chamfered joints around a semicircle, and a keystone that stands proud."""
-    count = even_segments(detail, 6, 14) + 1
+    count = even_segments(detail, 4, 14) + 1
     step = np.pi / count
     bevel = 0.014 if detail > 0.15 else 0.0
     stones = []
@@ -161,14 +162,18 @@ def spandrels(top: float, detail: float) -> Geometry:
     points[1, :, 0], points[1, :, 1] = reach * c, reach * s
     points = points[:, ::-1]  # left to right: columns right, rows up, so the front faces +z
     points[..., 2] = THICKNESS / 2.0
-    front = surface(points, np.stack([points[..., 0], -points[..., 1]], axis=-1), normals=np.zeros_like(points) + [0.0, 0.0, 1.0])
+    front = surface(
+        points,
+        np.stack([points[..., 0], -points[..., 1]], axis=-1),
+        normals=np.broadcast_to([0.0, 0.0, 1.0], points.shape).copy(),
+    )
     turned = np.diag([-1.0, 1.0, -1.0, 1.0])
     return merge([front, front.placed(turned)])
 
 
 def rib(detail: float) -> Geometry:
     """A plain arched band that carries a vault: its underside and two flanks; spans along z, from spring to spring."""
-    n = even_segments(detail, 6, 24)
+    n = even_segments(detail, 4, 24)
     angle = np.linspace(0.0, np.pi, n + 1)
     out = np.stack([np.zeros_like(angle), np.sin(angle), np.cos(angle)], axis=-1)
     half, inner, outer = 0.19, ARCH_RADIUS, BAY / 2.0 + 0.02
@@ -188,7 +193,7 @@ def rib(detail: float) -> Geometry:
 
 def vault(rise: float, detail: float) -> Geometry:
     """The underside of a groin vault over one bay: two crossing tunnels, four webs, springing at ``y = 0``."""
-    around, rows = even_segments(detail, 6, 20), segments(detail, 2, 8)
+    around, rows = even_segments(detail, 4, 20), segments(detail, 1, 8)
     half = BAY / 2.0
     theta = np.linspace(-np.pi / 2.0, np.pi / 2.0, around + 1)
     spread = np.sin(np.linspace(0.0, np.pi / 2.0, rows + 1))[:, None]

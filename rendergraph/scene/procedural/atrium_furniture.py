@@ -27,6 +27,7 @@ from rendergraph.scene.procedural.tessellation import segments
 from rendergraph.scene.scene import Light
 
 _RAIL = SPRING - 0.60  # curtain rail of the lower arches
+_TIE = 1.35  # where a curtain is gathered, below its rail
 _LAMPLIGHT = (2.6, 1.5, 0.65)
 
 
@@ -44,10 +45,15 @@ def furnish(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.Ge
 def _curtains(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.Generator, detail: float) -> None:
     """Tied-back pairs in every other lower arch of the long sides, straight ones in some arches of the gallery."""
     reach = BAY / 2.0 - 0.23
-    tied = [builder.mesh(furnishings.drape(rng, reach, 2.32, 1.35, detail), materials.curtains[0]) for _ in range(2)]
+    tied = [builder.mesh(furnishings.drape(rng, reach, 2.32, _TIE, detail), materials.curtains[0]) for _ in range(2)]
     straight = builder.mesh(furnishings.drape(rng, 1.15, 1.66, None, detail * 0.7), materials.curtains[0])
     rail = builder.mesh(furnishings.curtain_rail(BAY - 0.3, detail), materials.bronze)
-    dyed = {(m, d): m if d == materials.curtains[0] else builder.recoloured(m, d) for m in (*tied, straight) for d in materials.curtains}
+    clasp = builder.mesh(furnishings.tie_band(detail), materials.bronze)
+    dyed = {
+        (m, d): m if d == materials.curtains[0] else builder.recoloured(m, d)
+        for m in (*tied, straight)
+        for d in materials.curtains
+    }
     for number, arch in enumerate(ARCHES[:14]):
         dye = materials.curtains[int(rng.integers(len(materials.curtains)))]
         if number % 2 == 1:
@@ -60,15 +66,31 @@ def _curtains(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.
         # Behind the columns' axis: the balustrade stands before it.
         back = -0.10 * np.array([np.sin(arch.turn), np.cos(arch.turn)])
         builder.place(rail, placement(arch.x + back[0], y, arch.z + back[1], turn=arch.turn), "curtain rail")
-        builder.place(left, placement(arch.x + back[0] - along[0], y, arch.z + back[1] - along[1], turn=arch.turn), "curtain")
-        builder.place(right, placement(arch.x + back[0] + along[0], y, arch.z + back[1] + along[1], turn=arch.turn + pi), "curtain")
+        builder.place(
+            left, placement(arch.x + back[0] - along[0], y, arch.z + back[1] - along[1], turn=arch.turn), "curtain"
+        )
+        builder.place(
+            right,
+            placement(arch.x + back[0] + along[0], y, arch.z + back[1] + along[1], turn=arch.turn + pi),
+            "curtain",
+        )
+        if number % 2 == 1:
+            gathered = along * (1.0 - 0.13 / reach)
+            for side in (-1.0, 1.0):
+                x, z = arch.x + back[0] + side * gathered[0], arch.z + back[1] + side * gathered[1]
+                builder.place(clasp, placement(x, y - _TIE, z), "curtain clasp")
 
 
 def _hangings(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.Generator, detail: float) -> None:
     """Woven hangings on the brick of the long walls, one a bay."""
     cells = (segments(detail, 2, 18), segments(detail, 2, 22))
     cloth = _cloth((-0.75, 0.75), (-2.1, 0.0), cells, 0.0)
-    strips = ((-0.75, -0.61), (-2.1, 0.0)), ((0.61, 0.75), (-2.1, 0.0)), ((-0.61, 0.61), (-2.1, -1.96)), ((-0.61, 0.61), (-0.14, 0.0))
+    strips = (
+        ((-0.75, -0.61), (-2.1, 0.0)),
+        ((0.61, 0.75), (-2.1, 0.0)),
+        ((-0.61, 0.61), (-2.1, -1.96)),
+        ((-0.61, 0.61), (-0.14, 0.0)),
+    )
     border = merge([_cloth(x, y, (cells[0] // 6 + 1, cells[1] if x[1] - x[0] < 1.0 else 1), 0.006) for x, y in strips])
     trim = builder.mesh(border, materials.hangings[2])
     first = builder.mesh(cloth, materials.hangings[0])
@@ -108,7 +130,9 @@ def _plants(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.Ge
     palms = [builder.mesh(furnishings.palm(rng, detail), materials.frond) for _ in range(2)]
     shrubs = [builder.mesh(furnishings.shrub(rng, detail), materials.leaf) for _ in range(2)]
     x, z = HALF_X - 0.95, HALF_Z - 0.95
-    palm_places = [(i * x, j * z) for i in (-1, 1) for j in (-1, 1)] + [(i * 3.0, j * 1.9) for i in (-1, 1) for j in (-1, 1)]
+    palm_places = [(i * x, j * z) for i in (-1, 1) for j in (-1, 1)] + [
+        (i * 3.0, j * 1.9) for i in (-1, 1) for j in (-1, 1)
+    ]
     shrub_places = [(-HALF_X + BAY * k, side * (HALF_Z - 0.75)) for k in range(1, 7) for side in (-1, 1)]
     for places, plants, large in ((palm_places, palms, 1.25), (shrub_places, shrubs, 0.85)):
         for number, (px, pz) in enumerate(places):
@@ -148,5 +172,3 @@ def _lanterns(builder: SceneBuilder, materials: AtriumMaterials, detail: float) 
     for k in (1, 3, 4, 6):
         hang(great, -HALF_X + BAY * k, 6.1, 0.0, 1.9)
     return lights
-
-

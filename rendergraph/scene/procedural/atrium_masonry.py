@@ -48,7 +48,7 @@ def build_masonry(builder: SceneBuilder, materials: AtriumMaterials, detail: flo
 
 
 def _ring(width: float, y0: float, y1: float, inner_x: float, inner_z: float, bevel: float = 0.0) -> Geometry:
-    """Four blocks around a rectangle whose inside is ``2 inner_x`` by ``2 inner_z``; the long ones reach the corners."""
+    """Four blocks around a ``2 inner_x`` by ``2 inner_z`` rectangle; the long ones reach the corners."""
     high, y = y1 - y0, (y0 + y1) / 2.0
     long_size, short_size = (2.0 * (inner_x + width), high, width), (width, high, 2.0 * inner_z)
     x, z = inner_x + width / 2.0, inner_z + width / 2.0
@@ -96,7 +96,9 @@ def _arcades(builder: SceneBuilder, materials: AtriumMaterials, detail: float) -
 def _stonework(builder: SceneBuilder, materials: AtriumMaterials, bevel: float) -> None:
     """Corner piers, cornices, skirting, pilasters."""
     stone = materials.stone
-    pier = builder.mesh(block((THICKNESS + 0.02, ARCH_TOP, THICKNESS + 0.02), (0.0, ARCH_TOP / 2.0, 0.0)).mapped(0.5), materials.plaster)
+    pier = builder.mesh(
+        block((THICKNESS + 0.02, ARCH_TOP, THICKNESS + 0.02), (0.0, ARCH_TOP / 2.0, 0.0)).mapped(0.5), materials.plaster
+    )
     for x in (-HALF_X, HALF_X):
         for z in (-HALF_Z, HALF_Z):
             for spring in (SPRING, GALLERY_SPRING):
@@ -110,7 +112,10 @@ def _stonework(builder: SceneBuilder, materials: AtriumMaterials, bevel: float) 
             reach = THICKNESS / 2.0 + step
             mouldings.append(_ring(2.0 * reach, y0, y1, HALF_X - reach, HALF_Z - reach, bevel))
     builder.place(builder.mesh(merge(mouldings), stone), name="cornices")
-    skirting = [_ring(0.06, 0.0, 0.42, OUTER_X - 0.06, OUTER_Z - 0.06, bevel), _ring(0.09, 0.42, 0.50, OUTER_X - 0.09, OUTER_Z - 0.09, bevel)]
+    skirting = [
+        _ring(0.06, 0.0, 0.42, OUTER_X - 0.06, OUTER_Z - 0.06, bevel),
+        _ring(0.09, 0.42, 0.50, OUTER_X - 0.09, OUTER_Z - 0.09, bevel),
+    ]
     builder.place(builder.mesh(merge(skirting), stone), name="skirting")
     deep = BAY / 2.0 - arcade.ARCH_RADIUS
     pilaster = merge(
@@ -145,7 +150,10 @@ def _doors(builder: SceneBuilder, materials: AtriumMaterials, detail: float, bev
     scale, spring = 0.62, 1.75
     radius = arcade.ARCH_RADIUS * scale
     jamb_width = arcade.RING * scale
-    frame = [block((jamb_width, spring, 0.34), (side * (radius + jamb_width / 2.0), spring / 2.0, 0.0), bevel) for side in (-1.0, 1.0)]
+    frame = [
+        block((jamb_width, spring, 0.34), (side * (radius + jamb_width / 2.0), spring / 2.0, 0.0), bevel)
+        for side in (-1.0, 1.0)
+    ]
     jambs = builder.mesh(merge(frame), materials.stone)
     ring = builder.mesh(arcade.arch_ring(detail), materials.stone)
     # Upright planks, each as tall as the round head where it is highest; the ring hides their square corners.
@@ -160,4 +168,3 @@ def _doors(builder: SceneBuilder, materials: AtriumMaterials, detail: float, bev
         builder.place(jambs, world, "door jambs")
         builder.place(ring, placement(side * OUTER_X, spring, 0.0, turn=turn, scale=scale), "door arch")
         builder.place(leaf, world, "door")
-

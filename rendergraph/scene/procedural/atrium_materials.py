@@ -52,7 +52,7 @@ def add_materials(builder: SceneBuilder, rng: np.random.Generator, detail: float
     hanging = builder.material(replace(solid, name="hanging"), patterns.weave(rng, size))
 
     def dyed(material: int, name: str) -> tuple[int, ...]:
-        return tuple(builder.variant(material, name=f"{name} {k}", base_color=(*dye, 1.0)) for k, dye in enumerate(_DYES))
+        return tuple(builder.dyed(material, f"{name} {k}", (*dye, 1.0)) for k, dye in enumerate(_DYES))
 
     leafy = replace(solid, alpha=Alpha.MASKED, double_sided=True, alpha_cutoff=0.4)
     return AtriumMaterials(
@@ -62,7 +62,7 @@ def add_materials(builder: SceneBuilder, rng: np.random.Generator, detail: float
         floor=builder.material(replace(solid, name="marble tiles"), patterns.marble_tiles(rng, size)),
         wood=builder.material(replace(solid, name="oak"), patterns.wood(rng, size)),
         bronze=builder.material(Material("bronze"), patterns.hammered(rng, size)),
-        terracotta=builder.variant(stone, name="terracotta", base_color=(0.85, 0.36, 0.20, 1.0)),
+        terracotta=builder.dyed(stone, "terracotta", (0.85, 0.36, 0.20, 1.0)),
         soil=builder.material(replace(solid, name="soil", base_color=(0.05, 0.033, 0.022, 1.0))),
         leaf=builder.material(replace(leafy, name="leaf"), cutouts.leaf(rng, size)),
         frond=builder.material(replace(leafy, name="frond"), cutouts.frond(rng, size)),

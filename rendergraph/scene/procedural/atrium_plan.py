@@ -55,12 +55,7 @@ ARCHES: Final = tuple(
 )
 
 #: Vaulted cells of the arcade: a ring around the courtyard.
-CELLS: Final = tuple(
-    (x, z)
-    for x in _middles(OUTER_X)
-    for z in _middles(OUTER_Z)
-    if abs(x) > HALF_X or abs(z) > HALF_Z
-)
+CELLS: Final = tuple((x, z) for x in _middles(OUTER_X) for z in _middles(OUTER_Z) if abs(x) > HALF_X or abs(z) > HALF_Z)
 
 #: Where ribs and pilasters stand between the cells: the middle of the rib, spanning along local z, wall at local -z.
 RIBS: Final = tuple(

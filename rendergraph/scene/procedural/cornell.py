@@ -60,9 +60,12 @@ def cornell(detail: float, seed: int) -> Scene:
     red_i, green_i, blue_i = (radiance * area for radiance in _RADIANCE)
     scene.lights.append(
         Light(
-            (0.0, SIDE - 0.02, 0.0), (red_i, green_i, blue_i), radius=4.0 * SIDE,
-            inner=0.5, outer=float(np.radians(89.0)),
-        )  # fmt: skip
+            (0.0, SIDE - 0.02, 0.0),
+            (red_i, green_i, blue_i),
+            radius=4.0 * SIDE,
+            inner=0.5,
+            outer=float(np.radians(89.0)),
+        )
     )
     scene.ambient = Ambient((0.10, 0.09, 0.08), (0.12, 0.10, 0.08))
     return scene

@@ -17,7 +17,7 @@ from rendergraph.scene.procedural.textures import (
 
 
 def _grid(size: int) -> tuple[F32, F32]:
-    line = (np.arange(size, dtype=np.float32) + 0.5) / size
+    line = ((np.arange(size) + 0.5) / size).astype(np.float32)
     return line[None, :], line[:, None]
 
 

@@ -1,6 +1,8 @@
-"""What fills the courtyard: curtains, potted plants, lanterns, a fountain. Each stands at the origin of its own space."""
+"""What fills a courtyard: curtains, potted plants, lanterns, a fountain. Each has its own space and origin."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,7 +18,7 @@ def drape(rng: np.random.Generator, width: float, drop: float, tie: float | None
     the hem.
     """
     folds = max(3, round(width * 4.0))
-    across, down = folds * segments(detail, 3, 12), segments(detail, 4, 36)
+    across, down = folds * segments(detail, 2, 12), segments(detail, 3, 36)
     s = np.linspace(0.0, 1.0, across + 1)[None, :]
     y = np.linspace(1.0, 0.0, down + 1)[:, None]  # rows run up: the hem first; y is the share of the drop
     phase = rng.uniform(0.0, 2.0 * np.pi, 3)
@@ -40,16 +42,27 @@ def drape(rng: np.random.Generator, width: float, drop: float, tie: float | None
     return surface(points, uv)
 
 
+def tie_band(detail: float) -> Geometry:
+    """The bronze clasp around a gathered curtain, about the origin."""
+    t = np.linspace(0.0, 2.0 * np.pi, 2 * segments(detail, 2, 6) + 1)
+    profile = np.stack([0.165 - 0.012 * np.cos(t), -0.03 * np.sin(t)], axis=1)
+    return lathe([profile[::-1]], even_segments(detail, 6, 28))
+
+
 def curtain_rail(length: float, detail: float) -> Geometry:
     """A round rail along x, centred."""
-    return bar((-length / 2.0, 0.0, 0.0), (length / 2.0, 0.0, 0.0), 0.022, segments(detail, 5, 14))
+    return bar((-length / 2.0, 0.0, 0.0), (length / 2.0, 0.0, 0.0), 0.022, segments(detail, 3, 14))
 
 
 def pot(detail: float) -> Geometry:
     """A terracotta pot 0.62 m tall with a rolled rim."""
-    outside = [(0.0, 0.0), (0.21, 0.0)], [(0.21, 0.0), (0.25, 0.12), (0.30, 0.32), (0.32, 0.48)], [(0.32, 0.48), (0.35, 0.49), (0.375, 0.53), (0.37, 0.59), (0.34, 0.62)]
+    outside = (
+        [(0.0, 0.0), (0.21, 0.0)],
+        [(0.21, 0.0), (0.25, 0.12), (0.30, 0.32), (0.32, 0.48)],
+        [(0.32, 0.48), (0.35, 0.49), (0.375, 0.53), (0.37, 0.59), (0.34, 0.62)],
+    )
     inside = [(0.34, 0.62), (0.30, 0.60), (0.28, 0.52)], [(0.28, 0.52), (0.0, 0.52)]
-    return lathe([*outside, *inside], even_segments(detail, 8, 36))
+    return lathe(_refined([*outside, *inside], detail), even_segments(detail, 6, 36))
 
 
 def soil(detail: float) -> Geometry:
@@ -60,7 +73,7 @@ def soil(detail: float) -> Geometry:
 
 def palm(rng: np.random.Generator, detail: float) -> Geometry:
     """Arching fronds that rise from the middle of a pot."""
-    count = segments(detail, 9, 26)
+    count = segments(detail, 7, 26)
     blades = []
     for k in range(count):
         age = k / count
@@ -72,12 +85,14 @@ def palm(rng: np.random.Generator, detail: float) -> Geometry:
 
 def shrub(rng: np.random.Generator, detail: float) -> Geometry:
     """Broad leaves on short stalks, densest at the top."""
-    count = segments(detail, 16, 74)
+    count = segments(detail, 12, 74)
     blades = []
     for k in range(count):
         height = 0.55 * (k / count) ** 0.8
         lean = rng.uniform(0.35, 1.1) + 0.3 * (1.0 - k / count)
-        blade = _blade(rng, 2.399963 * k + rng.uniform(-0.3, 0.3), rng.uniform(0.30, 0.46), 0.2, lean, 1.1, detail * 0.4)
+        blade = _blade(
+            rng, 2.399963 * k + rng.uniform(-0.3, 0.3), rng.uniform(0.30, 0.46), 0.2, lean, 1.1, detail * 0.4
+        )
         angle = 2.399963 * k
         blades.append(blade.moved(0.05 * np.cos(angle), height, -0.05 * np.sin(angle)))
     return merge(blades).moved(0.0, 0.55, 0.0)
@@ -87,7 +102,7 @@ def _blade(
     rng: np.random.Generator, heading: float, length: float, width: float, lean: float, droop: float, detail: float
 ) -> Geometry:
     """A leaf: a strip that leaves the origin at ``lean`` radians from the vertical and bends down by ``droop`` more."""
-    steps = segments(detail, 3, 9)
+    steps = segments(detail, 2, 9)
     t = np.linspace(0.0, 1.0, steps + 1)
     bend = lean + droop * t**1.6
     ds = length / steps
@@ -109,20 +124,40 @@ def _blade(
 
 def lantern_frame(chain: float, detail: float) -> Geometry:
     """The bronze of a hanging lantern: chain, crown and foot around the glass at the origin."""
-    around = even_segments(detail, 6, 28)
-    crown = [(0.0, 0.13), (0.13, 0.13)], [(0.13, 0.13), (0.15, 0.15), (0.12, 0.19)], [(0.12, 0.19), (0.05, 0.24), (0.015, 0.30), (0.0, 0.31)]
-    foot = [(0.0, -0.22), (0.03, -0.20), (0.06, -0.155)], [(0.06, -0.155), (0.10, -0.15), (0.115, -0.12)], [(0.115, -0.12), (0.0, -0.12)]
+    around = even_segments(detail, 4, 28)
+    crown = (
+        [(0.0, 0.13), (0.13, 0.13)],
+        [(0.13, 0.13), (0.15, 0.15), (0.12, 0.19)],
+        [(0.12, 0.19), (0.05, 0.24), (0.015, 0.30), (0.0, 0.31)],
+    )
+    foot = (
+        [(0.0, -0.22), (0.03, -0.20), (0.06, -0.155)],
+        [(0.06, -0.155), (0.10, -0.15), (0.115, -0.12)],
+        [(0.115, -0.12), (0.0, -0.12)],
+    )
     posts = [
-        bar((0.115 * np.cos(a), -0.13, 0.115 * np.sin(a)), (0.125 * np.cos(a), 0.14, 0.125 * np.sin(a)), 0.009, segments(detail, 3, 8))
+        bar(
+            (0.115 * np.cos(a), -0.13, 0.115 * np.sin(a)),
+            (0.125 * np.cos(a), 0.14, 0.125 * np.sin(a)),
+            0.009,
+            segments(detail, 3, 8),
+        )
         for a in np.arange(6) * np.pi / 3.0
     ]
     hanger = bar((0.0, 0.29, 0.0), (0.0, chain, 0.0), 0.009, segments(detail, 3, 8))
-    return merge([lathe(list(crown), around), lathe(list(foot), around), hanger, *(posts if detail > 0.1 else [])])
+    return merge(
+        [
+            lathe(_refined(crown, detail), around),
+            lathe(_refined(foot, detail), around),
+            hanger,
+            *(posts if detail > 0.1 else []),
+        ]
+    )
 
 
 def lantern_glass(detail: float) -> Geometry:
     """The glowing globe of a lantern."""
-    around = even_segments(detail, 6, 24)
+    around = even_segments(detail, 4, 24)
     return sphere(0.105, around, around // 2)
 
 
@@ -148,21 +183,23 @@ def fountain(detail: float) -> Geometry:
     return merge([lathe(_refined(basin, detail), around), lathe(_refined(stem, detail), around)])
 
 
-def _refined(profile: list[list[tuple[float, float]]], detail: float) -> list[F64]:
-    """Smooth runs resampled through a Catmull-Rom spline."""
-    cuts = segments(detail, 1, 4)
+def _refined(profile: Sequence[Sequence[tuple[float, float]]], detail: float) -> list[F64]:
+    """Smooth runs resampled through a Catmull-Rom spline; at the lowest detail, their ends alone."""
+    cuts = segments(detail, 0, 4)
     runs = []
     for run in profile:
         p = np.asarray(run, float)
-        if len(p) < 3 or cuts == 1:
-            runs.append(p)
+        if len(p) < 3 or cuts < 2:
+            runs.append(p if cuts else p[[0, -1]])
             continue
         padded = np.concatenate([2.0 * p[:1] - p[1:2], p, 2.0 * p[-1:] - p[-2:-1]])
         t = np.linspace(0.0, len(p) - 1.0, (len(p) - 1) * cuts + 1)
         k = np.minimum(t.astype(int), len(p) - 2)
         f = (t - k)[:, None]
         a, b, c, d = (padded[k + offset] for offset in range(4))
-        curve = 0.5 * (2.0 * b + (c - a) * f + (2.0 * a - 5.0 * b + 4.0 * c - d) * f**2 + (3.0 * b - a - 3.0 * c + d) * f**3)
+        curve = 0.5 * (
+            2.0 * b + (c - a) * f + (2.0 * a - 5.0 * b + 4.0 * c - d) * f**2 + (3.0 * b - a - 3.0 * c + d) * f**3
+        )
         curve[:, 0] = np.maximum(curve[:, 0], 0.0)
         runs.append(curve)
     return runs

@@ -12,7 +12,12 @@ from rendergraph.scene.scene import Image, Instance, Material, Mesh, Scene, Text
 
 
 def placement(
-    x: float = 0.0, y: float = 0.0, z: float = 0.0, *, turn: float = 0.0, scale: float | tuple[float, float, float] = 1.0
+    x: float = 0.0,
+    y: float = 0.0,
+    z: float = 0.0,
+    *,
+    turn: float = 0.0,
+    scale: float | tuple[float, float, float] = 1.0,
 ) -> F64:
     """Scale, then turn about the vertical (radians, counter-clockwise seen from above), then move: float64[4, 4]."""
     c, s = np.cos(turn), np.sin(turn)
@@ -42,26 +47,27 @@ class SceneBuilder:
 
     def material(self, material: Material, maps: Maps | None = None) -> int:
         """Add a material, textured with ``maps`` when given."""
-        self._materials.append(replace(material, **self.textures(maps)) if maps else material)
+        self._materials.append(material if maps is None else self._textured(material, maps))
         return len(self._materials) - 1
 
-    def variant(self, material: int, **changes: object) -> int:
-        """Add a copy of a material that shares its textures."""
-        self._materials.append(replace(self._materials[material], **changes))  # type: ignore[arg-type]
+    def dyed(self, material: int, name: str, base_color: tuple[float, float, float, float]) -> int:
+        """Add a copy of a material in another colour; it shares the textures."""
+        self._materials.append(replace(self._materials[material], name=name, base_color=base_color))
         return len(self._materials) - 1
 
-    def textures(self, maps: Maps) -> dict[str, TextureUse]:
-        """Add the images of ``maps``; returns the material's texture fields."""
+    def _textured(self, material: Material, maps: Maps) -> Material:
         wrap = (Wrap.REPEAT, Wrap.REPEAT if maps.tiles else Wrap.CLAMP)
-        uses: dict[str, TextureUse] = {}
-        if maps.base is not None:
-            uses["base_color_texture"] = TextureUse(self.image(maps.base), wrap=wrap)
-        if maps.normal is not None:
-            uses["normal_texture"] = TextureUse(self.image(maps.normal), wrap=wrap)
-        if maps.orm is not None:
-            packed = TextureUse(self.image(maps.orm), wrap=wrap)
-            uses |= {"metallic_roughness_texture": packed, "occlusion_texture": packed}
-        return uses
+        base, normal, packed = (
+            None if image is None else TextureUse(self.image(image), wrap=wrap)
+            for image in (maps.base, maps.normal, maps.orm)
+        )
+        return replace(
+            material,
+            base_color_texture=base,
+            normal_texture=normal,
+            metallic_roughness_texture=packed,
+            occlusion_texture=packed,
+        )
 
     def mesh(self, geometry: Geometry, material: int) -> int:
         """Add a mesh."""

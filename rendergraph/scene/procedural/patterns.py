@@ -18,7 +18,7 @@ from rendergraph.scene.procedural.textures import (
 
 def _grid(size: int) -> tuple[F32, F32]:
     """Texel centres: columns x float32[1, size], rows y float32[size, 1], 0..1, y down."""
-    line = (np.arange(size, dtype=np.float32) + 0.5) / size
+    line = ((np.arange(size) + 0.5) / size).astype(np.float32)
     return line[None, :], line[:, None]
 
 
@@ -156,5 +156,7 @@ def chequer(rng: np.random.Generator, size: int) -> Maps:
     x, y = _grid(size)
     dark = ((np.floor(x * 2.0) + np.floor(y * 2.0)) % 2.0).astype(np.float32)
     grain = noise(rng, size, exponent=1.4, scale=12.0)
-    color = blend((0.60, 0.60, 0.60), (0.44, 0.44, 0.45), dark) + (grain[..., None] - np.float32(0.5)) * np.float32(0.05)
+    color = blend((0.60, 0.60, 0.60), (0.44, 0.44, 0.45), dark) + (grain[..., None] - np.float32(0.5)) * np.float32(
+        0.05
+    )
     return Maps(base_image("chequer", color), orm=orm_image("chequer", 0.6 + 0.2 * grain))

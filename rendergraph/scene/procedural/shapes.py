@@ -13,7 +13,9 @@ import numpy as np
 from rendergraph.scene.procedural.geometry import F64, Geometry, merge, surface, unit
 
 
-def sheet(corner: Sequence[float], right: Sequence[float], up: Sequence[float], cells: tuple[int, int] = (1, 1)) -> Geometry:
+def sheet(
+    corner: Sequence[float], right: Sequence[float], up: Sequence[float], cells: tuple[int, int] = (1, 1)
+) -> Geometry:
     """A flat parallelogram facing ``cross(right, up)``, with ``cells`` quads along right and up."""
     r, u = np.asarray(right, float), np.asarray(up, float)
     s, t = np.meshgrid(np.linspace(0.0, 1.0, cells[0] + 1), np.linspace(0.0, 1.0, cells[1] + 1))
@@ -24,8 +26,10 @@ def sheet(corner: Sequence[float], right: Sequence[float], up: Sequence[float], 
 Modulation = Callable[[F64, F64], F64]
 
 
-def lathe(profile: Sequence[Sequence[tuple[float, float]]] | Sequence[F64], around: int, modulation: Modulation | None = None) -> Geometry:
-    """A solid of revolution about y. ``profile``: smooth runs of (radius, y), bottom to top outside; creases between runs.
+def lathe(
+    profile: Sequence[Sequence[tuple[float, float]]] | Sequence[F64], around: int, modulation: Modulation | None = None
+) -> Geometry:
+    """A solid of revolution about y. ``profile``: smooth runs of (radius, y), bottom to top outside, creased between.
 
     ``modulation(angle, y)`` multiplies the radius (fluting, leaves); normals then come from differences.
     """
@@ -52,7 +56,13 @@ def lathe(profile: Sequence[Sequence[tuple[float, float]]] | Sequence[F64], arou
             slope = unit(np.gradient(points, axis=0))
             normals = slope[:, None, 1:] * ring - slope[:, None, :1] * np.array([0.0, 1.0, 0.0])
         parts.append(
-            surface(grid, np.stack([u, v], axis=-1), closed_columns=True, normals=normals, along=None if normals is None else along + 0.0 * grid)
+            surface(
+                grid,
+                np.stack([u, v], axis=-1),
+                closed_columns=True,
+                normals=normals,
+                along=None if normals is None else along + 0.0 * grid,
+            )
         )
     return merge(parts)
 
@@ -84,7 +94,9 @@ def bar(start: Sequence[float], end: Sequence[float], radius: float, around: int
     """A closed round bar between two points."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     length = float(np.linalg.norm(b - a))
-    solid = lathe([[(0.0, 0.0), (radius, 0.0)], [(radius, 0.0), (radius, length)], [(radius, length), (0.0, length)]], around)
+    solid = lathe(
+        [[(0.0, 0.0), (radius, 0.0)], [(radius, 0.0), (radius, length)], [(radius, length), (0.0, length)]], around
+    )
     up = (b - a) / length
     side = np.cross(up, np.eye(3)[int(np.argmin(np.abs(up)))])
     side /= np.linalg.norm(side)

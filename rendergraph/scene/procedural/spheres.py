@@ -30,9 +30,7 @@ def spheres(detail: float, seed: int) -> Scene:
         for column in range(COLUMNS):
             metallic, roughness = row / (ROWS - 1), 0.05 + 0.95 * column / (COLUMNS - 1)
             name = f"metallic {metallic:.2f} roughness {roughness:.2f}"
-            material = builder.material(
-                Material(name, (0.93, 0.42, 0.25, 1.0), metallic=metallic, roughness=roughness)
-            )
+            material = builder.material(Material(name, (0.93, 0.42, 0.25, 1.0), metallic=metallic, roughness=roughness))
             mesh = builder.mesh(ball, material) if first is None else builder.recoloured(first, material)
             first = mesh if first is None else first
             builder.place(mesh, placement((column - (COLUMNS - 1) / 2) * _PITCH, height + row * _PITCH), name)
@@ -43,7 +41,9 @@ def spheres(detail: float, seed: int) -> Scene:
 
     scene = builder.build()
     middle = height + (ROWS - 1) / 2 * _PITCH
-    scene.cameras.append(Camera((0.0, middle + 0.4, 8.6), (0.0, middle - 0.15, 0.0), fov=float(np.radians(42.0)), name="main"))
+    scene.cameras.append(
+        Camera((0.0, middle + 0.4, 8.6), (0.0, middle - 0.15, 0.0), fov=float(np.radians(42.0)), name="main")
+    )
     direction = np.array([-0.5, -0.75, -0.65])
     x, y, z = direction / np.linalg.norm(direction)
     scene.sun = Sun((float(x), float(y), float(z)), (4.0, 3.85, 3.6))

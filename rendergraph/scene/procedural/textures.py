@@ -1,4 +1,4 @@
-"""Tileable noise, and height fields and reflectances made into 8-bit images. All arrays are [row, column], row 0 on top."""
+"""Tileable noise, and fields made into 8-bit images. All arrays are [row, column], row 0 on top."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def noise(rng: np.random.Generator, size: int, *, exponent: float, scale: float 
     amplitude[0, 0] = 0.0
     phase = rng.random(amplitude.shape, dtype=np.float32) * np.float32(2.0 * np.pi)
     field = np.fft.irfft2(amplitude * np.exp(1j * phase), s=(size, size)).astype(np.float32)
-    return np.float32(0.5) + field * np.float32(0.2 / float(field.std()))
+    return np.asarray(np.float32(0.5) + field * np.float32(0.2 / float(field.std())))
 
 
 def smoothstep(low: float, high: float, values: F32) -> F32:
@@ -71,8 +71,8 @@ def normal_image(name: str, height: F32, depth: float) -> Image:
     y = (np.roll(height, -1, axis=0) - np.roll(height, 1, axis=0)) * step
     scale = np.float32(0.5) / np.sqrt(x * x + y * y + 1.0)
     pixels = np.full((*height.shape, 4), 255, np.uint8)
-    for channel, component in enumerate((x, y, np.float32(1.0))):
-        pixels[..., channel] = _bytes(component * scale + np.float32(0.5))
+    for channel, component in enumerate((x * scale, y * scale, scale)):
+        pixels[..., channel] = _bytes(component + np.float32(0.5))
     return Image(pixels, srgb=False, name=f"{name}_normal")
 
 
