@@ -129,7 +129,10 @@ class Compute(Node[ComputeParams]):
 
     def _check_local_size(self, b: Builder, tile: tuple[int, int]) -> None:
         """A local size written as numbers must be the tile: else texels are left out, or done twice."""
-        source = (b.graph_folder / self.params.shader).read_text(encoding="utf-8", errors="replace")
+        try:
+            source = (b.graph_folder / self.params.shader).read_text(encoding="utf-8", errors="replace")
+        except OSError:
+            return  # the device reports it, with the reason
         for axis, number in _LOCAL_SIZE.findall(source):
             if int(number) != tile["xy".index(axis)]:
                 problem = f"per_texel is {list(tile)}, but {self.params.shader} has local_size_{axis} = {number}"

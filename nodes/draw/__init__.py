@@ -20,7 +20,9 @@ _SUFFIXES = {
 class DrawParams(UserRasterParams):
     """The shaders, what they draw, and the fixed-function state."""
 
-    vertex: GraphFile = knob(..., "Vertex shader (.vert), with its own #version.")
+    vertex: GraphFile | None = knob(
+        None, "Vertex shader (.vert), with its own #version; none draws the scene with the library's."
+    )
     fragment: GraphFile | None = knob(None, "Fragment shader (.frag); none when only depth is written.")
     geometry: GraphFile | None = knob(None, "Geometry shader (.geom).")
     tess_control: GraphFile | None = knob(None, "Tessellation control shader (.tesc).")
@@ -50,6 +52,8 @@ class DrawParams(UserRasterParams):
             raise ValueError(
                 "set one of queues (the scene's geometry), vertices (a number of them) and indirect (a buffer)"
             )
+        if self.vertex is None and (not self.queues or self.tess_evaluation is not None):
+            raise ValueError("only the scene's geometry, without tessellation, is drawn without a vertex shader")
         if self.tess_control is not None and self.tess_evaluation is None:
             raise ValueError("tess_control needs tess_evaluation")
         if self.tess_evaluation is not None and self.topology != "triangles":
@@ -78,6 +82,10 @@ class Draw(Node[DrawParams]):
         if colors and params.fragment is None:
             raise misuse(b, "colour is written without a fragment shader", "set fragment:")
         files = [file for field in _SUFFIXES if (file := getattr(params, field)) is not None]
+        defines = dict(params.defines)
+        if params.vertex is None:
+            files.append("<scene.vert>")
+            defines |= {"DEPTH_ONLY": params.fragment is None, "ALPHA_TEST": False, "LAYERED": False}
         target = self._depth(b, target)
         state = State(
             depth_test=None if target is None or params.depth_test == "none" else params.depth_test,
@@ -88,7 +96,7 @@ class Draw(Node[DrawParams]):
         unbound = {params.depth_read, params.indirect}
         b.raster(
             "draw",
-            b.program(*files, defines=params.defines, user=True),
+            b.program(*files, defines=defines, user=True),
             color=colors,
             depth=target,
             bind=params.bind_reads(b, [port for port in b.inputs if port not in unbound]) | buffers,

@@ -1,4 +1,4 @@
-"""Shadows and cascades in float64 numpy: rays against every triangle, and the smallest spheres around frustum slices."""
+"""Shadows and cascades in float64 numpy: rays against every triangle, splits, and the corners of frustum slices."""
 
 from __future__ import annotations
 

@@ -18,7 +18,6 @@ class SkyParams(Params):
     model: Literal["gradient", "analytic"] = knob(
         "analytic",
         "analytic (Preetham 1999; a gradient where the scene has no sun) or gradient (the scene's ambient light).",
-        accurate=("gradient", "analytic"),
     )
     turbidity: float = knob(3.0, "Haze of the analytic model: 2 very clear, 10 hazy.", ge=2.0, le=10.0)
     sun_illuminance: float = knob(

@@ -24,18 +24,20 @@ const vec2 PIVOT = vec2(10.0 / 16.5, 0.5);
 const float TOE_POWER = 3.0;
 const float SHOULDER_POWER = 3.25;
 
-// One half of the sigmoid: rises from the pivot with SLOPE and bends to reach exactly `reach.y` at `reach.x`.
-vec3 bend(vec3 distance, vec2 reach, float power) {
+// The scale at which the bend, rising from the pivot with SLOPE, reaches exactly `reach.y` at `reach.x`.
+float bend_scale(vec2 reach, float power) {
     float straight = SLOPE * reach.x;
-    float scale = pow((pow(straight / reach.y, power) - 1.0) / pow(straight, power), -1.0 / power);
-    vec3 t = SLOPE * distance / scale;
-    return scale * t / pow(1.0 + pow(t, vec3(power)), vec3(1.0 / power));
+    return pow((pow(straight / reach.y, power) - 1.0) / pow(straight, power), -1.0 / power);
 }
 
+// Toe below the pivot and shoulder above are one formula: choosing its constants first halves the powers taken.
 vec3 sigmoid(vec3 x) {
-    vec3 toe = PIVOT.y - bend(max(PIVOT.x - x, 0.0), PIVOT, TOE_POWER);
-    vec3 shoulder = PIVOT.y + bend(max(x - PIVOT.x, 0.0), 1.0 - PIVOT, SHOULDER_POWER);
-    return mix(toe, shoulder, greaterThan(x, vec3(PIVOT.x)));
+    bvec3 above = greaterThan(x, vec3(PIVOT.x));
+    vec3 power = mix(vec3(TOE_POWER), vec3(SHOULDER_POWER), above);
+    vec3 scale = mix(vec3(bend_scale(PIVOT, TOE_POWER)), vec3(bend_scale(1.0 - PIVOT, SHOULDER_POWER)), above);
+    vec3 straight = SLOPE * abs(x - PIVOT.x);
+    vec3 bent = straight / pow(1.0 + pow(straight / scale, power), 1.0 / power);
+    return PIVOT.y + mix(-bent, bent, above);
 }
 
 vec3 tone_curve(vec3 radiance) {

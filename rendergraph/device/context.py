@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-import glcontext
 import moderngl
+from glcontext import egl
 
 from rendergraph.device import enums as e
 from rendergraph.device.debug import DebugLog, Scope
@@ -172,8 +172,13 @@ def _backend(index: int) -> Any:
     except OSError as error:
         raise _environment("RG501", library=library, detail=error, apt=APT_LINE) from None
     try:
-        return glcontext.get_backend_by_name("egl")(
-            glversion=REQUIRED_VERSION, mode="standalone", device_index=index, libegl=library, libgl=library
+        # The module behind get_backend_by_name, which would let GLCONTEXT_DEVICE_INDEX overrule the index asked for.
+        return egl.create_context(
+            mode="standalone",
+            glversion=REQUIRED_VERSION,
+            device_index=index,
+            libegl=library,
+            libgl=os.environ.get("GLCONTEXT_LINUX_LIBGL", library),
         )
     except Exception as error:  # glcontext raises nothing more precise
         text = str(error)

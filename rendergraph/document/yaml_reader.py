@@ -7,7 +7,7 @@ limits stop it early and nothing recurses) and is more than twice as fast. Sourc
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, Final
 
@@ -25,6 +25,7 @@ from yaml.events import (
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.document.positions import Branch, Mark, Place, to_position
+from rendergraph.document.yaml_anchors import AliasError, Anchored, find_anchored, merge, merge_sources
 from rendergraph.document.yaml_errors import syntax_error, unprintable
 from rendergraph.document.yaml_scalars import YAML_1_1_BOOLEANS, AmbiguousNumberError, resolve
 
@@ -48,16 +49,6 @@ class Reading:
 
 
 @dataclass(slots=True)
-class _Anchored:
-    """The value behind an anchor, with what an alias to it costs; ``height`` is negative while it is still open."""
-
-    value: Any
-    place: Place
-    values: int
-    height: int
-
-
-@dataclass(slots=True)
 class _Open:
     """A mapping or list being read. ``key`` is the mapping key whose value comes next."""
 
@@ -68,7 +59,8 @@ class _Open:
     key: str | None = None
     key_mark: Mark | None = None
     height: int = 0
-    merges: list[tuple[Any, Branch]] | None = None
+    merging: bool = False  # the key is `<<`
+    merges: list[tuple[dict[str, Any], Branch]] = field(default_factory=list)
 
 
 def read_yaml(data: bytes, file: str) -> Reading:
@@ -103,7 +95,7 @@ class _Reader:
         self.next_event = next_event
         self.file = file
         self.problems = problems
-        self.anchors: dict[str, _Anchored] = {}
+        self.anchors: dict[str, Anchored] = {}
         self.values = 0
 
     def read(self) -> Reading:
@@ -156,9 +148,8 @@ class _Reader:
         if type(top.container) is list:
             top.branch.children[len(top.container)] = (None, place)
             top.container.append(value)
-        elif top.key == _MERGE and top.merges is not None:
+        elif top.merging:
             self._merge(top, value, place, event)
-            top.key = None
         else:
             assert top.key is not None
             top.container[top.key] = value
@@ -180,10 +171,7 @@ class _Reader:
                 self._report("RG112", event.start_mark, text=_shown(text), problem=error.problem, hint=error.hint)
             if text in YAML_1_1_BOOLEANS:
                 self._report("RG113", event.start_mark, text=text, boolean=YAML_1_1_BOOLEANS[text])
-        extra = len(text) // _LONG
-        self.values += extra
-        if event.anchor is not None:
-            self.anchors[event.anchor] = _Anchored(value, event.start_mark, 1 + extra, 0)
+        self._count_text(event, value)
         return value
 
     def _key(self, event: Any, top: _Open) -> str:
@@ -193,20 +181,23 @@ class _Reader:
             self._report("RG107", mark, tag=_shown(event.tag))
         if event.implicit[0]:
             if key == _MERGE:
-                top.merges = top.merges or []
+                top.merging = True
                 return key
             if not _is_text(key):
                 shown = _shown(key) if key else "nothing"
                 self._report("RG106", mark, found=shown, hint=f"quote it: '{shown}'" if key else "write a name")
-        extra = len(key) // _LONG
-        self.values += extra
-        if event.anchor is not None:
-            self.anchors[event.anchor] = _Anchored(key, mark, 1 + extra, 0)
+        self._count_text(event, key)
         if key in top.branch.children:
             first = top.branch.children[key][0]
             assert first is not None
             self._report("RG105", mark, key=_shown(key), first=to_position(self.file, first))
         return key
+
+    def _count_text(self, event: Any, value: Any) -> None:
+        extra = len(event.value) // _LONG
+        self.values += extra
+        if event.anchor is not None:
+            self.anchors[event.anchor] = Anchored(value, event.start_mark, 1 + extra, 0)
 
     # ---------------------------------------------------------------- containers and aliases
 
@@ -224,31 +215,24 @@ class _Reader:
             self._report("RG107", event.start_mark, tag=_shown(event.tag))
         opened = _Open({} if mapping else [], Branch(mark, {}), event.anchor, self.values)
         if event.anchor is not None:
-            self.anchors[event.anchor] = _Anchored(opened.container, opened.branch, 0, -1)
+            self.anchors[event.anchor] = Anchored(opened.container, opened.branch, 0, -1)
         return opened
 
     def _close(self, closed: _Open) -> None:
-        for source, places in closed.merges or ():
-            for key, value in source.items():
-                if key not in closed.container:
-                    closed.container[key] = value
-                    closed.branch.children[key] = places.children[key]
+        if closed.merges:
+            merge(closed.container, closed.branch, closed.merges)
         if closed.anchor is not None:
             values = self.values - closed.before + 1
-            self.anchors[closed.anchor] = _Anchored(closed.container, closed.branch, values, closed.height + 1)
+            self.anchors[closed.anchor] = Anchored(closed.container, closed.branch, values, closed.height + 1)
 
     def _alias(self, event: Any, stack: list[_Open]) -> tuple[Any, Place]:
         top = stack[-1] if stack else None
         if top is not None and top.key is None and type(top.container) is dict:
             raise self._stop("RG106", event.start_mark, found=f"the alias *{event.anchor}", hint="write the name out")
-        anchored = self.anchors.get(event.anchor)
-        name = _shown(event.anchor)
-        if anchored is None:
-            problem, hint = f"alias *{name} has no anchor &{name} before it", "mark the value to repeat with an anchor"
-            raise self._stop("RG109", event.start_mark, problem=problem, hint=hint)
-        if anchored.height < 0:
-            problem, hint = f"alias *{name} stands inside its own value", "a value cannot contain itself"
-            raise self._stop("RG109", event.start_mark, problem=problem, hint=hint)
+        try:
+            anchored = find_anchored(self.anchors, event.anchor)
+        except AliasError as error:
+            raise self._stop("RG109", event.start_mark, problem=error.problem, hint=error.hint) from None
         if len(stack) + anchored.height > MAX_DEPTH:
             raise self._stop("RG108", event.start_mark, limit=MAX_DEPTH)
         if top is not None:
@@ -257,17 +241,14 @@ class _Reader:
         return anchored.value, anchored.place
 
     def _merge(self, top: _Open, value: Any, place: Place, event: Any) -> None:
-        sources = [(value, place)]
-        if type(value) is list and isinstance(place, Branch):
-            sources = [(item, place.children[index][1]) for index, item in enumerate(value)]
-        assert top.merges is not None
-        for source, where in sources:
-            if type(source) is not dict or not isinstance(where, Branch):
-                problem, hint = "a merge key takes a mapping or a list of mappings", "write `<<: *anchor`"
-                self._report("RG109", event.start_mark, problem=problem, hint=hint)
-                return
-            self.values += sum(1 + len(key) // _LONG for key in source)
-            top.merges.append((source, where))
+        top.key, top.merging = None, False
+        sources = merge_sources(value, place)
+        if sources is None:
+            problem, hint = "a merge key takes a mapping or a list of mappings", "write `<<: *anchor`"
+            self._report("RG109", event.start_mark, problem=problem, hint=hint)
+            return
+        self.values += sum(1 + len(key) // _LONG for source, _ in sources for key in source)
+        top.merges += sources
 
     # ---------------------------------------------------------------- diagnostics
 

@@ -85,8 +85,6 @@ def _check_output_desc(findings: Findings, name: str, found: Resource) -> None:
             problem, hint = "a buffer is no image", "write it as .npy"
     elif desc.samples > 1:
         problem, hint = "it is multisampled", "resolve it with a copy pass (blit: true) into another resource"
-    elif desc.layers > 1 and not model.file.lower().endswith(".npy"):
-        problem, hint = f"it has {desc.layers} layers", "write it as .npy, or copy one layer"
     if not problem and model.format is not None and isinstance(desc, TextureDesc) and model.format != desc.format:
         problem, hint = f"it is declared as {desc.format}", "give the format under resources: only"
     if problem:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rendergraph.scene.scene import F64, Light
 
@@ -35,7 +37,7 @@ def scatter_lights(
     ]
 
 
-def _saturated(hue: F64, saturation: F64) -> F64:
+def _saturated(hue: npt.NDArray[Any], saturation: npt.NDArray[Any]) -> F64:
     """Linear rgb float64[n, 3] of hues 0..1, the largest channel 1."""
     wheel = np.abs((hue[:, None] * 6.0 + np.array([0.0, 4.0, 2.0])) % 6.0 - 3.0) - 1.0
     pure: F64 = np.clip(wheel, 0.0, 1.0)

@@ -84,6 +84,24 @@ def test_a_missing_extension_is_named(device: Device) -> None:
 def test_the_environment_may_pick_the_device(device: Device) -> None:
     assert "renderer" in run(OPEN.format(index=None), GLCONTEXT_DEVICE_INDEX=str(device.info.index))
     assert run(OPEN.format(index=None), GLCONTEXT_DEVICE_INDEX="63")["code"] == "RG503"
+    assert "renderer" in run(OPEN.format(index=device.info.index), GLCONTEXT_DEVICE_INDEX="63"), "the argument wins"
+
+
+def test_every_device_is_enumerated_once(device: Device) -> None:
+    script = """
+import json
+from rendergraph.device import context
+found = list(
+    (index, what.info.renderer if isinstance(what, context.Device) else what.diagnostics[0].code)
+    for index, what in context.enumerate_devices()
+)
+print(json.dumps({"found": found, "open": context._open is not None}))
+"""
+    found = run(script, GLCONTEXT_DEVICE_INDEX="0")
+    assert [index for index, _ in found["found"]] == list(range(len(found["found"])))
+    assert device.info.renderer in [renderer for _, renderer in found["found"]]
+    assert len(found["found"]) < 32
+    assert found["open"] is False
 
 
 def test_one_device_a_process(device: Device) -> None:

@@ -43,11 +43,12 @@ def test_data(text: str, value: Any) -> None:
 
 
 def test_merge_keys_add_what_is_missing() -> None:
-    text = "a: &a {x: 1, y: 1}\nb: &b {y: 2, z: 2}\nc: {<<: [*a, *b], x: 0}\nd:\n  <<: *b\n  w: 3\n'<<': kept\n"
+    text = "a: &a {x: 1, y: 1}\nb: &b {y: 2, z: 2}\nc: {<<: [*a, *b], x: 0}\nd:\n  <<: *b\n  w: 3\n"
+    text += "e: {<<: *b, '<<': kept}\n"
     value = read(text).value
     assert value["c"] == {"x": 0, "y": 1, "z": 2}
     assert value["d"] == {"w": 3, "y": 2, "z": 2}
-    assert value["<<"] == "kept"
+    assert value["e"] == {"<<": "kept", "y": 2, "z": 2}
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ Vec3 = Sequence[float]
 
 @dataclass(frozen=True)
 class Quad:
-    """A parallelogram: ``corner``, ``corner + u``, ``corner + u + v``, ``corner + v``, counter-clockwise seen from ``u x v``."""
+    """A parallelogram: ``corner`` spanned by ``u`` and ``v``, counter-clockwise seen from ``u x v``."""
 
     corner: Vec3
     u: Vec3

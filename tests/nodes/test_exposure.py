@@ -164,6 +164,16 @@ def test_average_equals_float64(device: Device, tmp_path: Path, stride: int) -> 
 
 
 @pytest.mark.gpu
+def test_error_grows_with_the_stride(device: Device, tmp_path: Path) -> None:
+    errors = []
+    for stride in (1, 4, 16):
+        got, image = metered(tmp_path, RADIANCE, {"mode": "average", "stride": stride})
+        errors.append(abs(got[1] - reference.log_luminances(image, -10.0, 14.0).mean()))
+    assert errors == sorted(errors)
+    assert errors[0] < 1e-5 < errors[1]
+
+
+@pytest.mark.gpu
 @pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (0.5, 0.95), (0.0, 0.01), (0.99, 1.0), (0.31, 0.32)])
 def test_histogram_is_within_half_a_bin(device: Device, tmp_path: Path, low: float, high: float) -> None:
     got, image = metered(tmp_path, RADIANCE, {"low": low, "high": high})

@@ -104,7 +104,7 @@ def test_glass_over_deferred_is_glass_over_forward(device: Device, tmp_path: Pat
 
 @pytest.mark.gpu
 def test_panes_composite_back_to_front(device: Device, tmp_path: Path) -> None:
-    """Unlit panes have known radiance: the pixel behind all three against the formula, and in the wrong order (twin)."""
+    """Unlit panes have known radiance: the pixel behind all three against the formula, and in wrong order (twin)."""
     colors = [(0.9, 0.1, 0.1), (0.1, 0.9, 0.1), (0.1, 0.1, 0.9)]
     coverage = (0.4, 0.6, 0.5)
     panes = tuple(

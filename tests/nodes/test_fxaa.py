@@ -19,11 +19,11 @@ HEIGHT, WIDTH = 48, 256
 #: Half planes as in reference.aliased: one sample a texel.
 HALF_PLANE = """\
 #version 450
-uniform float u_slope, u_offset;
+uniform float u_slope, u_offset, u_contrast;
 out vec4 color;
 void main() {
     float below = float(gl_FragCoord.y < u_offset + u_slope * gl_FragCoord.x);
-    color = vec4(vec3(below), 0.5);
+    color = vec4(vec3(1.0 - u_contrast + u_contrast * below), 0.5);
 }
 """
 
@@ -89,7 +89,7 @@ def test_constant_image_is_unchanged(device: Device, tmp_path: Path, size: tuple
 
 @pytest.mark.gpu
 def test_edges_below_the_threshold_are_unchanged(device: Device, tmp_path: Path) -> None:
-    result = filtered(tmp_path, HALF_PLANE, {"edge_threshold": 1.0}, u_slope=0.1, u_offset=11.2)
+    result = filtered(tmp_path, HALF_PLANE, {"edge_threshold": 1.0}, u_slope=0.1, u_offset=11.2, u_contrast=1)
     np.testing.assert_array_equal(result.images["image"], result.captures["aliased"])
 
 
@@ -103,7 +103,7 @@ def test_edges_below_the_threshold_are_unchanged(device: Device, tmp_path: Path)
     ],
 )
 def test_equals_float64(device: Device, tmp_path: Path, shader: str, settings: dict[str, Any]) -> None:
-    uniforms = {"u_slope": 0.13, "u_offset": 7.7} if shader is HALF_PLANE else {}
+    uniforms = {"u_slope": 0.13, "u_offset": 7.7, "u_contrast": 1.0} if shader is HALF_PLANE else {}
     result = filtered(tmp_path, shader, settings, (64, 40), **uniforms)
     source = result.captures["aliased"][..., :3] / 255.0
     got = result.images["image"] / 255.0
@@ -115,24 +115,34 @@ def test_equals_float64(device: Device, tmp_path: Path, shader: str, settings: d
     assert np.abs(got[..., :3] - other).max() * 255 > 1.0
 
 
+MIDDLE = (slice(8, -8), slice(64, -64))  # away from the border, where edges are cut off
+
+
+def rmse(folder: Path, contrast: float, **settings: float) -> float:
+    """Root mean square error of filtered edges against exact coverage."""
+    squares = []
+    for slope, offset in EDGES:
+        uniforms = {"u_slope": slope, "u_offset": offset, "u_contrast": contrast}
+        result = filtered(folder, HALF_PLANE, {"subpixel": 0.0, **settings}, **uniforms)
+        truth = 1.0 - contrast + contrast * reference.coverage(HEIGHT, WIDTH, slope, offset)
+        squares.append((result.images["image"][..., 0] / 255.0 - truth)[MIDDLE] ** 2)
+    return float(np.sqrt(np.mean(squares)))
+
+
 @pytest.mark.gpu
 def test_error_falls_with_the_search(device: Device, tmp_path: Path) -> None:
-    middle = (slice(8, -8), slice(64, -64))  # away from the border, where edges are cut off
-
-    def error(steps: int) -> float:
-        squares = []
-        for slope, offset in EDGES:
-            result = filtered(
-                tmp_path, HALF_PLANE, {"search_steps": steps, "subpixel": 0.0}, u_slope=slope, u_offset=offset
-            )
-            truth = reference.coverage(HEIGHT, WIDTH, slope, offset)
-            squares.append((result.images["image"][..., 0] / 255.0 - truth)[middle] ** 2)
-        return float(np.sqrt(np.mean(squares)))
-
-    aliased = [
-        (reference.aliased(HEIGHT, WIDTH, s, o) - reference.coverage(HEIGHT, WIDTH, s, o))[middle] ** 2
+    squares = [
+        (reference.aliased(HEIGHT, WIDTH, s, o) - reference.coverage(HEIGHT, WIDTH, s, o))[MIDDLE] ** 2
         for s, o in EDGES
     ]
-    errors = [float(np.sqrt(np.mean(aliased))), error(1), error(4), error(8), error(16)]
+    errors = [float(np.sqrt(np.mean(squares))), *(rmse(tmp_path, 1.0, search_steps=n) for n in (1, 4, 8, 16))]
     assert errors == sorted(errors, reverse=True)
-    assert errors[-1] < 0.5 * errors[0]
+    assert errors[-1] < 0.6 * errors[0]
+
+
+@pytest.mark.gpu
+@pytest.mark.parametrize("knob", ["edge_threshold", "edge_minimum"])
+def test_error_of_faint_edges_falls_with_the_thresholds(device: Device, tmp_path: Path, knob: str) -> None:
+    other = "edge_minimum" if knob == "edge_threshold" else "edge_threshold"
+    high, low = (rmse(tmp_path, 0.2, **{knob: value, other: 0.0}) for value in (0.5, 0.1))
+    assert low < 0.7 * high

@@ -72,8 +72,8 @@ outputs: {{normal: {{file: normal.npy}}, direction: {{file: direction.npy}}}}
 
 #: Largest error in degrees; half floats may be truncated when written (llvmpipe does), which doubles theirs.
 LIMITS = {
-    "rg16": 0.005, "rg16_snorm": 0.005, "rgb10_a2": 0.1, "rg8": 0.96, "rg8_snorm": 0.96, "rgba8": 0.4, "rgba8_snorm": 0.4,
-    "rg16f": 0.12, "rgba16f": 0.04, "rg32f": 1e-4, "rgba32f": 1e-4,
+    "rg16": 0.005, "rg16_snorm": 0.005, "rgb10_a2": 0.1, "rg8": 0.96, "rg8_snorm": 0.96,
+    "rgba8": 0.4, "rgba8_snorm": 0.4, "rg16f": 0.12, "rgba16f": 0.04, "rg32f": 1e-4, "rgba32f": 1e-4,
 }  # fmt: skip
 
 
@@ -247,7 +247,7 @@ def test_back_of_double_sided_surface_faces_the_viewer(device: Device, tmp_path:
 
 
 def test_mirrored_instance_keeps_its_side_and_its_normal_map(device: Device, tmp_path: Path) -> None:
-    """A normal map that leans along +u leans along -x once the instance is mirrored in x, and the side stays in front."""
+    """A normal map that leans along +u leans along -x once the instance is mirrored in x; its front stays in front."""
     lean = Image(np.full((4, 4, 4), (230, 128, 205, 255), dtype=np.uint8), srgb=False)
     material = Material(normal_texture=TextureUse(0))
     plain = fill(device, tmp_path, [SQUARE], material, images=(lean,))["normal"][CENTRE]

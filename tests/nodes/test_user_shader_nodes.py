@@ -41,6 +41,7 @@ LAYERS = TextureDesc("rgba16f", 64, 32, layers=5, target=Target.D2_ARRAY)
 MULTI = TextureDesc("rgba16f", 64, 32, samples=4)
 MIPS = TextureDesc("rgba16f", 64, 32, mips=7)
 BUFFER = BufferDesc(64)
+ON = {"ON": True}
 TRIANGLE = {"vertex": "a.vert", "fragment": "a.frag", "vertices": 3}
 
 Ports = Mapping[str, Desc]
@@ -71,7 +72,7 @@ def access(b: Builder, resource: str, step: int = 0) -> Access:
 def test_fullscreen_binds_by_kind_of_resource() -> None:
     b = build(
         "fullscreen",
-        {"shader": "a.frag", "filter": "linear", "wrap": {"u_a": "repeat"}, "stencil": ["u_s"], "defines": {"ON": True}},
+        {"shader": "a.frag", "filter": "linear", "wrap": {"u_a": "repeat"}, "stencil": ["u_s"], "defines": ON},
         {"u_a": COLOR, "u_n": COUNTS, "u_d": DEPTH, "u_s": STENCIL, "Table": BUFFER, "u_m": MULTI},
         {"first": COLOR, "z": DEPTH, "second": COLOR, "Log": BUFFER},
     )  # fmt: skip
@@ -311,6 +312,8 @@ def test_mistakes(name: str) -> None:
         ("draw", {"vertex": "a.frag", "vertices": 3}),
         ("draw", {"vertex": "a.vert", "fragment": "a.vert", "vertices": 3}),
         ("draw", {"vertex": "a.vert"}),
+        ("draw", {"fragment": "a.frag", "vertices": 3}),
+        ("draw", {"fragment": "a.frag", "queues": ["opaque"], "tess_evaluation": "a.tese"}),
         ("draw", {"vertex": "a.vert", "vertices": 3, "queues": ["opaque"]}),
         ("draw", {"vertex": "a.vert", "vertices": 3, "tess_control": "a.tesc"}),
         ("draw", {"vertex": "a.vert", "vertices": 3, "tess_evaluation": "a.tese", "topology": "lines"}),

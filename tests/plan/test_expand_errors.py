@@ -259,14 +259,6 @@ GRAPHS: dict[str, tuple[str, list[str]]] = {
         passes("z: {node: clear, write: {target: a}}", resources="a: {bytes: 16}", rest="outputs: {a: {file: a.npy}}"),
         [],
     ),
-    "layers as an image": (
-        passes(
-            "z: {node: clear, write: {target: a}}",
-            resources="a: {format: r8, layers: 2}",
-            rest="outputs: {a: {file: a.png}}",
-        ),
-        ["RG330"],
-    ),
     "format said twice": (
         passes(MADE, resources="a: {format: rgba8}", rest="outputs: {a: {file: x.png, format: rgba16f}}"),
         ["RG330"],

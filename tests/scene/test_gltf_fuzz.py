@@ -110,7 +110,7 @@ def test_mutated_json(data):
             if path and data.draw(st.booleans()):
                 del owner[path[-1]]
             elif path:
-                owner[path[-1]] = data.draw(WRONG)
+                owner[path[-1]] = copy.deepcopy(data.draw(WRONG))
         except (KeyError, IndexError, TypeError, AttributeError):
             continue  # an earlier mutation took it away
     survives(_glb(tiny))

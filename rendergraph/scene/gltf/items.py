@@ -25,17 +25,28 @@ def printable(text: str) -> str:
 
 
 class Item:
-    """One JSON value. ``path`` is its JSON pointer; ``str(item)`` is ``file: path``, as diagnostics name it.
+    """One JSON value, and where it is: ``str(item)`` is ``file: path``, as diagnostics name it.
 
     Every method raises ``RenderGraphError``: RG604 for a wrong type or range, RG605 for a missing member.
     """
 
-    __slots__ = ("file", "path", "value")
+    __slots__ = ("_key", "_owner", "file", "value")
 
-    def __init__(self, value: Any, file: str, path: str = "") -> None:
+    def __init__(self, value: Any, file: str, owner: Item | None = None, key: str | int = "") -> None:
         self.value = value
         self.file = file
-        self.path = path
+        self._owner = owner
+        self._key = key
+
+    @property
+    def path(self) -> str:
+        """The JSON pointer, put together only when something is to be said: files have tens of thousands of values."""
+        keys: list[str] = []
+        item = self
+        while item._owner is not None:
+            keys.append(f"/{printable(str(item._key))}")
+            item = item._owner
+        return "".join(reversed(keys))
 
     def __str__(self) -> str:
         return f"{self.file}: {self.path or '/'}"
@@ -59,7 +70,7 @@ class Item:
     def get(self, name: str) -> Item | None:
         """A member, or none when it is absent."""
         members = self.members()
-        return Item(members[name], self.file, f"{self.path}/{printable(name)}") if name in members else None
+        return Item(members[name], self.file, self, name) if name in members else None
 
     def require(self, name: str) -> Item:
         """A member that must be there."""
@@ -77,7 +88,7 @@ class Item:
         if not isinstance(self.value, list):
             raise self.wrong("an array")
         for index, value in enumerate(self.value):
-            yield Item(value, self.file, f"{self.path}/{index}")
+            yield Item(value, self.file, self, index)
 
     def extension(self, name: str) -> Item | None:
         """An extension object, or none."""

@@ -15,8 +15,7 @@ _NEAREST = 9728
 
 def read_material(item: Item, document: Document, images: Images) -> Material:
     """One element of ``materials``. ``RenderGraphError`` RG604-RG606, RG611-RG614."""
-    metallic_roughness = item.get("pbrMetallicRoughness")
-    pbr = Item({}, item.file, item.path) if metallic_roughness is None else metallic_roughness
+    pbr = item.get("pbrMetallicRoughness") or Item({}, item.file)
     alpha = item.get("alphaMode")
     if alpha is not None and alpha.as_text() not in _ALPHA:
         raise alpha.wrong("OPAQUE, MASK or BLEND")

@@ -32,7 +32,7 @@ def column(height: float, radius: float, detail: float, *, fluted: bool) -> Geom
         [(r * 1.06, 0.37), (r * 1.06, 0.40)],
     ]
     neck, bell_top, abacus = top - 0.52, top - 0.14, 0.14
-    around = even_segments(detail, 6, 40)
+    around = even_segments(detail, 6, 36)
     solid = [
         block((wide, 0.14, wide), (0.0, 0.07, 0.0), 0.012 if detail > 0.15 else 0.0),
         lathe(base, around),
@@ -46,7 +46,7 @@ def column(height: float, radius: float, detail: float, *, fluted: bool) -> Geom
 
 def _bulge(low: float, high: float, y0: float, y1: float, out: float, detail: float) -> list[tuple[float, float]]:
     """A torus moulding's half round profile."""
-    t = np.linspace(0.0, 1.0, segments(detail, 2, 9))
+    t = np.linspace(0.0, 1.0, segments(detail, 2, 7))
     r = low + (high - low) * t + out * np.sin(np.pi * t)
     y = (y0 + y1) / 2.0 - (y1 - y0) / 2.0 * np.cos(np.pi * t)
     return list(zip(r.tolist(), y.tolist(), strict=True))
@@ -62,7 +62,7 @@ def _hollow(low: float, high: float, y0: float, y1: float, detail: float) -> lis
 def _shaft(radius: float, y0: float, y1: float, detail: float, fluted: bool) -> Geometry:
     """A shaft with entasis; flutes run out near both ends, where the grid can show them."""
     around = even_segments(detail, 6, 32)
-    per_flute = segments(detail, 0, 6)
+    per_flute = segments(detail, 0, 5)
     if not fluted or per_flute < 3:
         return lathe([_tapering(radius, y0, y1, np.linspace(0.0, 1.0, segments(detail, 2, 11)))], around)
     ends = np.array([0.0, 0.03, 0.06])
@@ -84,7 +84,7 @@ def _tapering(radius: float, y0: float, y1: float, t: F64) -> F64:
 
 def _capital(radius: float, y0: float, y1: float, detail: float) -> Geometry:
     """A bell with two tiers of eight leaves that curl outwards."""
-    around, rows = even_segments(detail, 6, 80), segments(detail, 1, 16)
+    around, rows = even_segments(detail, 6, 64), segments(detail, 1, 13)
     t = np.linspace(0.0, 1.0, rows + 1)
     bell = radius * (1.0 + 0.62 * t**2.2)
     profile = np.stack([bell, y0 + (y1 - y0) * t], axis=1)

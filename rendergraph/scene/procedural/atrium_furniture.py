@@ -54,8 +54,9 @@ def _curtains(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.
         for m in (*tied, straight)
         for d in materials.curtains
     }
+    dyes = rng.permutation(len(materials.curtains))
     for number, arch in enumerate(ARCHES[:14]):
-        dye = materials.curtains[int(rng.integers(len(materials.curtains)))]
+        dye = materials.curtains[dyes[number // 2 % len(dyes)]]
         if number % 2 == 1:
             y = _RAIL
             left, right = (dyed[mesh, dye] for mesh in tied)
@@ -96,9 +97,10 @@ def _hangings(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.
     first = builder.mesh(cloth, materials.hangings[0])
     meshes = [first, *(builder.recoloured(first, dye) for dye in materials.hangings[1:])]
     rod = builder.mesh(furnishings.curtain_rail(1.75, detail), materials.wood)
-    for arch in ARCHES[:14]:
+    order = rng.permutation(len(meshes))
+    for number, arch in enumerate(ARCHES[:14]):
         z = np.sign(arch.z) * (OUTER_Z - 0.045)
-        mesh = meshes[int(rng.integers(len(meshes)))]
+        mesh = meshes[order[number % len(meshes)]]
         builder.place(mesh, placement(arch.x, 2.95, float(z), turn=arch.turn), "hanging")
         builder.place(trim, placement(arch.x, 2.95, float(z), turn=arch.turn), "hanging border")
         builder.place(rod, placement(arch.x, 2.95, float(z), turn=arch.turn), "hanging rod")

@@ -74,7 +74,7 @@ def _shell(builder: SceneBuilder, materials: AtriumMaterials) -> None:
 def _arcades(builder: SceneBuilder, materials: AtriumMaterials, detail: float) -> None:
     stone = materials.stone
     lower = builder.mesh(arcade.column(SPRING, 0.24, detail, fluted=True), stone)
-    upper = builder.mesh(arcade.column(GALLERY_SPRING - GALLERY, 0.17, detail * 0.75, fluted=False), stone)
+    upper = builder.mesh(arcade.column(GALLERY_SPRING - GALLERY, 0.17, detail * 0.6, fluted=False), stone)
     ring = builder.mesh(arcade.arch_ring(detail), stone)
     spandrels = builder.mesh(arcade.spandrels(ARCH_TOP, detail).mapped(0.5), materials.plaster)
     rib = builder.mesh(arcade.rib(detail), stone)

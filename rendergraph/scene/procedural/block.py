@@ -15,7 +15,7 @@ from rendergraph.scene.procedural.geometry import F64, I64, Geometry, unit
 
 @dataclass(frozen=True, slots=True)
 class _Template:
-    """Any block's vertices: position = ``sign * where(outer, half, half - bevel)``, uv = position . (u_axis, v_axis)."""
+    """Any block's vertices: position = ``sign * where(outer, half, half - bevel)``, uv = position . u_axis, v_axis."""
 
     sign: F64
     outer: npt.NDArray[np.bool_]

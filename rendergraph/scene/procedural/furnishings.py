@@ -18,7 +18,7 @@ def drape(rng: np.random.Generator, width: float, drop: float, tie: float | None
     the hem.
     """
     folds = max(3, round(width * 4.0))
-    across, down = folds * segments(detail, 2, 12), segments(detail, 3, 36)
+    across, down = folds * segments(detail, 2, 11), segments(detail, 3, 28)
     s = np.linspace(0.0, 1.0, across + 1)[None, :]
     y = np.linspace(1.0, 0.0, down + 1)[:, None]  # rows run up: the hem first; y is the share of the drop
     phase = rng.uniform(0.0, 2.0 * np.pi, 3)
@@ -44,9 +44,9 @@ def drape(rng: np.random.Generator, width: float, drop: float, tie: float | None
 
 def tie_band(detail: float) -> Geometry:
     """The bronze clasp around a gathered curtain, about the origin."""
-    t = np.linspace(0.0, 2.0 * np.pi, 2 * segments(detail, 2, 6) + 1)
+    t = np.linspace(0.0, 2.0 * np.pi, 2 * segments(detail, 2, 5) + 1)
     profile = np.stack([0.165 - 0.012 * np.cos(t), -0.03 * np.sin(t)], axis=1)
-    return lathe([profile[::-1]], even_segments(detail, 6, 28))
+    return lathe([profile[::-1]], even_segments(detail, 4, 24))
 
 
 def curtain_rail(length: float, detail: float) -> Geometry:
@@ -62,7 +62,7 @@ def pot(detail: float) -> Geometry:
         [(0.32, 0.48), (0.35, 0.49), (0.375, 0.53), (0.37, 0.59), (0.34, 0.62)],
     )
     inside = [(0.34, 0.62), (0.30, 0.60), (0.28, 0.52)], [(0.28, 0.52), (0.0, 0.52)]
-    return lathe(_refined([*outside, *inside], detail), even_segments(detail, 6, 36))
+    return lathe(_refined([*outside, *inside], detail, 2), even_segments(detail, 6, 32))
 
 
 def soil(detail: float) -> Geometry:
@@ -124,7 +124,7 @@ def _blade(
 
 def lantern_frame(chain: float, detail: float) -> Geometry:
     """The bronze of a hanging lantern: chain, crown and foot around the glass at the origin."""
-    around = even_segments(detail, 4, 28)
+    around = even_segments(detail, 4, 24)
     crown = (
         [(0.0, 0.13), (0.13, 0.13)],
         [(0.13, 0.13), (0.15, 0.15), (0.12, 0.19)],
@@ -147,8 +147,8 @@ def lantern_frame(chain: float, detail: float) -> Geometry:
     hanger = bar((0.0, 0.29, 0.0), (0.0, chain, 0.0), 0.009, segments(detail, 3, 8))
     return merge(
         [
-            lathe(_refined(crown, detail), around),
-            lathe(_refined(foot, detail), around),
+            lathe(_refined(crown, detail, 2), around),
+            lathe(_refined(foot, detail, 2), around),
             hanger,
             *(posts if detail > 0.1 else []),
         ]
@@ -180,12 +180,12 @@ def fountain(detail: float) -> Geometry:
         [(0.71, 1.37), (0.58, 1.26), (0.30, 1.19), (0.10, 1.18)],
         [(0.10, 1.18), (0.08, 1.30), (0.10, 1.42), (0.05, 1.52), (0.0, 1.56)],
     ]
-    return merge([lathe(_refined(basin, detail), around), lathe(_refined(stem, detail), around)])
+    return merge([lathe(_refined(basin, detail, 4), around), lathe(_refined(stem, detail, 4), around)])
 
 
-def _refined(profile: Sequence[Sequence[tuple[float, float]]], detail: float) -> list[F64]:
+def _refined(profile: Sequence[Sequence[tuple[float, float]]], detail: float, fine: int) -> list[F64]:
     """Smooth runs resampled through a Catmull-Rom spline; at the lowest detail, their ends alone."""
-    cuts = segments(detail, 0, 4)
+    cuts = segments(detail, 0, fine)
     runs = []
     for run in profile:
         p = np.asarray(run, float)

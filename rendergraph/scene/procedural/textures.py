@@ -39,8 +39,9 @@ def noise(rng: np.random.Generator, size: int, *, exponent: float, scale: float 
         amplitude *= square / (square + np.float32(scale * scale))
     amplitude[0, 0] = 0.0
     phase = rng.random(amplitude.shape, dtype=np.float32) * np.float32(2.0 * np.pi)
-    field = np.fft.irfft2(amplitude * np.exp(1j * phase), s=(size, size)).astype(np.float32)
-    return np.asarray(np.float32(0.5) + field * np.float32(0.2 / float(field.std())))
+    field = np.fft.irfft2(amplitude * np.exp(1j * phase), s=(size, size))
+    result: F32 = (field * (0.2 / field.std()) + 0.5).astype(np.float32)
+    return result
 
 
 def smoothstep(low: float, high: float, values: F32) -> F32:
@@ -69,7 +70,7 @@ def normal_image(name: str, height: F32, depth: float) -> Image:
     step = np.float32(depth * height.shape[1] / 2.0)
     x = (np.roll(height, 1, axis=1) - np.roll(height, -1, axis=1)) * step
     y = (np.roll(height, -1, axis=0) - np.roll(height, 1, axis=0)) * step
-    scale = np.float32(0.5) / np.sqrt(x * x + y * y + 1.0)
+    scale = (0.5 / np.sqrt(x * x + y * y + 1.0)).astype(np.float32)
     pixels = np.full((*height.shape, 4), 255, np.uint8)
     for channel, component in enumerate((x * scale, y * scale, scale)):
         pixels[..., channel] = _bytes(component + np.float32(0.5))
