@@ -7,7 +7,7 @@ from rendergraph.plan.alias import assign_memory
 from rendergraph.plan.barrier_intents import compare_intents
 from rendergraph.plan.barriers import derive_barriers
 from rendergraph.plan.cull import cull
-from rendergraph.plan.dependencies import find_dependencies
+from rendergraph.plan.dependencies import find_flow
 from rendergraph.plan.graph import Graph
 from rendergraph.plan.index import index_graph
 from rendergraph.plan.lifetimes import find_lifetimes
@@ -29,12 +29,12 @@ def compile_plan(graph: Graph, options: PlanOptions | None = None) -> tuple[Plan
     options = options or PlanOptions()
     # Names become numbers, resources become cells as fine as any access needs.
     index = index_graph(graph)
-    # Who must run before whom, and whose content flows into whom.
-    dependencies = find_dependencies(index)
+    # Whose content flows into whom, once it is clear who touches what before whom.
+    flow = find_flow(index)
     # Walk back from the outputs; what is not reached does not run.
-    live, culled = cull(index, dependencies, options.cull)
-    # One order that keeps all dependencies.
-    numbers, ordered = order(index, dependencies, live, options)
+    live, culled = cull(index, flow, options.cull)
+    # One order that keeps every read after its write, and so on.
+    numbers, ordered = order(index, flow, live, options)
     steps = tuple(index.subpasses[n] for n in numbers)
     # First and last use, then memory: who may take whose place.
     lifetimes = find_lifetimes(graph, steps)
@@ -59,7 +59,7 @@ def compile_plan(graph: Graph, options: PlanOptions | None = None) -> tuple[Plan
         decisions=(
             *graph.decisions,
             *culled,
-            *dependencies.decisions,
+            *flow.decisions,
             *ordered,
             *memory.decisions,
             *barriers.decisions,

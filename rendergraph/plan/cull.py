@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rendergraph.plan.dependencies import Dependencies
+from rendergraph.plan.dependencies import Flow
 from rendergraph.plan.graph import Decision, Kind
 from rendergraph.plan.index import WRITES, Index
 
 _SHOWN = 8  # names listed as evidence
 
 
-def cull(index: Index, dependencies: Dependencies, enabled: bool) -> tuple[list[bool], list[Decision]]:
+def cull(index: Index, flow: Flow, enabled: bool) -> tuple[list[bool], list[Decision]]:
     """Whether each sub-pass runs, and a decision for each that does not, for each pass that is gone whole and for each
     resource that nothing touches any more.
 
@@ -20,11 +20,11 @@ def cull(index: Index, dependencies: Dependencies, enabled: bool) -> tuple[list[
     """
     if not enabled:
         return [True] * len(index.subpasses), []
-    live = _mark(index, dependencies)
+    live = _mark(index, flow)
     if all(live):
         return live, _explain_resources(index, live)
     readers: list[list[int]] = [[] for _ in live]
-    for subpass, sources in enumerate(dependencies.sources):
+    for subpass, sources in enumerate(flow.sources):
         for source in sources:
             readers[source].append(subpass)
     written: list[set[str]] = [set() for _ in live]
@@ -36,7 +36,7 @@ def cull(index: Index, dependencies: Dependencies, enabled: bool) -> tuple[list[
     def explain(subject: str, group: Sequence[int]) -> Decision:
         names = sorted(set().union(*(written[s] for s in group)))
         outside = sorted({index.subpasses[r].name for s in group for r in readers[s] if r not in group})
-        later = {r for s in group for r in dependencies.replaced_by.get(s, ()) if r not in group}
+        later = {r for s in group for r in flow.replaced_by.get(s, ()) if r not in group}
         replacing = {index.subpasses[r].name for r in later}
         if not names:
             reason = "writes_nothing"
@@ -56,13 +56,13 @@ def cull(index: Index, dependencies: Dependencies, enabled: bool) -> tuple[list[
     return live, decisions + _explain_resources(index, live)
 
 
-def _mark(index: Index, dependencies: Dependencies) -> list[bool]:
+def _mark(index: Index, flow: Flow) -> list[bool]:
     """Walk back over the data flow from what the graph is for."""
     live = [False] * len(index.subpasses)
     graph = index.graph
 
     def last_writers(resource: str) -> Iterable[int]:
-        return (s for s in (dependencies.final[cell] for cell in index.cells_of[resource]) if s >= 0)
+        return (s for s in (flow.final[cell] for cell in index.cells_of[resource]) if s >= 0)
 
     history: dict[int, list[int]] = {}  # sub-pass -> writers of what it reads a frame later
     for resource in index.resources:
@@ -80,7 +80,7 @@ def _mark(index: Index, dependencies: Dependencies) -> list[bool]:
         subpass = stack.pop()
         if not live[subpass]:
             live[subpass] = True
-            stack += dependencies.sources[subpass]
+            stack += flow.sources[subpass]
             stack += history.get(subpass, ())
     return live
 

@@ -1,7 +1,8 @@
-"""Which sub-pass needs which: the order every schedule must keep, and the data that truly flows.
+"""What flows from sub-pass to sub-pass, and which must run before which.
 
-Each cell's touches are walked once, writer by writer: read after write, write after read and write after write follow
-in linear time. Loads of content that nobody made are errors here.
+Each cell's touches are walked once, writer by writer, in linear time: first for the flow of content, from which
+culling starts; then, for what is left, for read after write, write after read and write after write. Loads of content
+that nobody made are errors here.
 """
 
 from __future__ import annotations
@@ -11,69 +12,81 @@ from dataclasses import dataclass
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.plan.graph import Decision
 from rendergraph.plan.index import LOADS, PRESET, WRITES, Index
-from rendergraph.plan.precedence import find_precedence
+from rendergraph.plan.precedence import Touch, find_precedence
 
 
 @dataclass(slots=True)
-class Dependencies:
-    """Per sub-pass: ``needs`` must run before it for any reason; ``sources`` made content it loads (data flow only);
-    ``replaced_by`` overwrote some of its content before anybody read it. ``final``: per cell, its last writer or -1.
-    ``order``: one legal order, grouped by pass. Lists may name a sub-pass twice.
+class Flow:
+    """Per sub-pass: ``sources`` made content it loads (one may be listed twice); ``replaced_by`` overwrote some of its
+    content before anybody read it. ``final``: per cell, its last writer or -1. ``sequence``: per cell, its touches in
+    order. ``order``: one legal order of all sub-passes, grouped by pass.
     """
 
-    needs: list[list[int]]
     sources: list[list[int]]
     replaced_by: dict[int, list[int]]
     final: list[int]
+    sequence: list[list[Touch]]
     order: list[int]
     decisions: list[Decision]
 
 
-def find_dependencies(index: Index) -> Dependencies:
-    """Derive all edges between sub-passes. Raises ``RenderGraphError`` with every mistake found."""
+def find_flow(index: Index) -> Flow:
+    """Follow content from writer to reader. Raises ``RenderGraphError`` with every mistake found."""
     precedence = find_precedence(index)
-    count = len(index.subpasses)
-    needs: list[list[int]] = [[] for _ in range(count)]
-    sources: list[list[int]] = [[] for _ in range(count)]
+    sources: list[list[int]] = [[] for _ in index.subpasses]
     replaced_by: dict[int, list[int]] = {}
     final: list[int] = []
     blank: dict[tuple[int, int], int] = {}  # (sub-pass, resource) -> cells it loads that hold nothing yet
     for cell, touches in enumerate(precedence.sequence):
         writer = -1
-        readers: list[int] = []
+        fresh = False  # whether nobody has read the writer's content yet
         for subpass, flags in touches:
             if flags & LOADS:
+                fresh = False
                 if writer >= 0:
-                    needs[subpass].append(writer)
                     sources[subpass].append(writer)
                 else:
                     key = subpass, index.resource_of[cell]
                     blank[key] = blank.get(key, 0) + 1
             if flags & WRITES:
-                needs[subpass] += readers
-                if writer >= 0 and not readers and not flags & LOADS:
-                    needs[subpass].append(writer)
+                if fresh:
                     replaced_by.setdefault(writer, []).append(subpass)
-                writer, readers = subpass, []
-            else:
-                readers.append(subpass)
+                writer, fresh = subpass, True
         final.append(writer)
-    _follow_after(index, needs)
     errors = [*precedence.errors, *_undefined_loads(index, blank), *_unwritten(index)]
     if errors:
         raise RenderGraphError(errors)
     order = [subpass for p in precedence.passes for subpass in index.steps[p]]
-    return Dependencies(needs, sources, replaced_by, final, order, precedence.decisions)
+    return Flow(sources, replaced_by, final, precedence.sequence, order, precedence.decisions)
 
 
-def _follow_after(index: Index, needs: list[list[int]]) -> None:
-    """``after:`` binds every sub-pass of one pass behind every sub-pass of another."""
+def find_needs(index: Index, flow: Flow, live: list[bool]) -> list[list[int]]:
+    """Per live sub-pass, the live ones that must run before it, for whatever reason. One may be listed twice.
+
+    Found after culling: two accesses that only a culled writer kept apart must be bound directly.
+    """
+    needs: list[list[int]] = [[] for _ in live]
+    for touches in flow.sequence:
+        writer = -1
+        readers: list[int] = []
+        for subpass, flags in touches:
+            if not live[subpass]:
+                continue
+            if writer >= 0 and (flags & LOADS or not readers):
+                needs[subpass].append(writer)
+            if flags & WRITES:
+                needs[subpass] += readers
+                writer, readers = subpass, []
+            else:
+                readers.append(subpass)
     number = {found.name: i for i, found in enumerate(index.passes)}
     for p, found in enumerate(index.passes):
         for name in found.after:
-            if name in number:
+            if name in number:  # every sub-pass of the one behind every sub-pass of the other
+                earlier = [s for s in index.steps[number[name]] if live[s]]
                 for subpass in index.steps[p]:
-                    needs[subpass].extend(index.steps[number[name]])
+                    needs[subpass] += earlier
+    return needs
 
 
 def _undefined_loads(index: Index, blank: dict[tuple[int, int], int]) -> list[Diagnostic]:

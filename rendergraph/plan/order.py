@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from rendergraph.plan.dependencies import Dependencies
+from rendergraph.plan.dependencies import Flow, find_needs
 from rendergraph.plan.graph import Decision
 from rendergraph.plan.index import Index
 from rendergraph.plan.memory_order import MemorySearch, pick_ready
@@ -12,14 +12,14 @@ from rendergraph.plan.plan import PlanOptions
 
 
 def order(
-    index: Index, dependencies: Dependencies, live: list[bool], options: PlanOptions
+    index: Index, flow: Flow, live: list[bool], options: PlanOptions
 ) -> tuple[list[int], list[Decision]]:
     """The live sub-passes in the order ``options.order`` asks for; the same for any order of the file.
 
     ``ValueError`` for an unknown kind of order.
     """
-    needs = [sorted({n for n in found if live[n]}) if live[s] else [] for s, found in enumerate(dependencies.needs)]
-    default = _depth_first(index, dependencies, needs, live)
+    needs = [sorted(set(found)) for found in find_needs(index, flow, live)]
+    default = _depth_first(index, flow, needs, live)
     if options.order == "default":
         return default, [Decision("order", "depth_first_from_outputs", "frame")]
     if options.order == "random":
@@ -35,16 +35,16 @@ def order(
     raise ValueError(f"no order '{options.order}': choose default, memory or random")
 
 
-def _depth_first(index: Index, dependencies: Dependencies, needs: list[list[int]], live: list[bool]) -> list[int]:
+def _depth_first(index: Index, flow: Flow, needs: list[list[int]], live: list[bool]) -> list[int]:
     """Post-order from the outputs: producers stay close to consumers. The deepest dependency goes first, so that what
     is made in one step is made last; a pass's own steps follow on each other.
     """
     depth = [0] * len(needs)
-    for s in dependencies.order:
+    for s in flow.order:
         if needs[s]:
             depth[s] = 1 + max(depth[n] for n in needs[s])
     pass_of = index.pass_of
-    final, cells_of = dependencies.final, index.cells_of
+    final, cells_of = flow.final, index.cells_of
     roots = [final[cell] for name in sorted(index.graph.outputs) for cell in cells_of[name] if final[cell] >= 0]
     roots += [s for s in range(len(live)) if live[s]]
     seen = [not alive for alive in live]

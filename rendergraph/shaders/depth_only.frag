@@ -6,7 +6,7 @@
 
 void main() {
 #if ALPHA_TEST
-    vec4 texel = sample_material(SLOT_BASE_COLOR, materials[vertex.material].rotation_0.x);
+    vec4 texel = sample_material(SLOT_BASE_COLOR);
     if (is_cut_out(material_base_color(texel).a)) {
         discard;
     }

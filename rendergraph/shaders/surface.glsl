@@ -17,7 +17,9 @@ const int SLOT_OCCLUSION = 3;
 const int SLOT_EMISSIVE = 4;
 
 // One texture of the fragment's material; white where it has none, the neutral factor of all five but the normal.
-vec4 sample_material(int slot, float rotation) {
+vec4 sample_material(int slot) {
+    vec4 rotations = materials[vertex.material].rotation_0;
+    float rotation = slot < 4 ? rotations[slot] : materials[vertex.material].rotation_1.x;
     bool second = materials[vertex.material].textures[slot].uv_set == 1u;
     vec2 uv = second ? vertex.uv1 : vertex.uv0;
     vec2 dx = second ? dFdx(vertex.uv1) : dFdx(vertex.uv0);
@@ -73,13 +75,20 @@ vec3 shading_normal(vec3 texel) {
 }
 
 Surface fetch_surface() {
-    // A rolled loop: five inlined fetches would cost five times the compilation.
-    vec4 texels[5];
-    vec4 rotations = materials[vertex.material].rotation_0;
+    // A rolled loop over the textures the material has: five inlined fetches would cost five times the compilation, and
+    // a software rasteriser runs both sides of a branch, but skips iterations.
+    vec4 texels[5] = vec4[5](vec4(1.0), vec4(1.0), vec4(1.0), vec4(1.0), vec4(1.0));
+#if TEXTURE_ARRAYS
+    uint pending = 0u;
     for (int slot = 0; slot < 5; ++slot) {
-        float rotation = slot < 4 ? rotations[slot] : materials[vertex.material].rotation_1.x;
-        texels[slot] = sample_material(slot, rotation);
+        pending |= materials[vertex.material].textures[slot].array != NO_TEXTURE ? 1u << slot : 0u;
     }
+    do {
+        int slot = findLSB(pending | 16u);
+        pending &= pending - 1u;
+        texels[slot] = sample_material(slot);
+    } while (pending != 0u);
+#endif
     vec4 base_color = material_base_color(texels[SLOT_BASE_COLOR]);
     vec4 factors = materials[vertex.material].factors;
     Surface s;

@@ -462,7 +462,7 @@ void main() {
 
 
 def test_draw_of_the_scene_as_it_is_and_as_patches(tmp_path: Path) -> None:
-    """Tessellation of level one changes nothing, and neither does the default cull of closed geometry."""
+    """The library's vertex shader does what a user's would, and tessellation of level one changes nothing."""
     vertex = (
         HEAD
         + """
@@ -497,27 +497,29 @@ void main() {
 """
     )
     fragment = HEAD + "out vec4 color;\nvoid main() { color = vec4(gl_FragCoord.z); }\n"
-    common = {"vertex": "v.vert", "fragment": "f.frag", "queues": ["opaque"]}
-    patches = {"tess_control": "c.tesc", "tess_evaluation": "e.tese"}
+    common = {"fragment": "f.frag", "queues": ["opaque"]}
+    patches = {"vertex": "v.vert", "tess_control": "c.tesc", "tess_evaluation": "e.tese"}
     graph = {
         "frame": FRAME,
         "scene": {"source": "cornell", "detail": 0.0},
         "resources": {
-            "z": {"format": "d32f"},
-            "y": {"format": "d32f"},
-            "a": {"format": "r32f"},
-            "b": {"format": "r32f"},
+            **{name: {"format": "d32f"} for name in ("x", "y", "z", "only")},
+            **{name: {"format": "r32f"} for name in ("a", "b", "c")},
         },
         "passes": {
             "plain": use("draw", {"c": "a", "z": "z"}, **common),
-            "patches": use("draw", {"c": "b", "z": "y"}, **common, **patches),
+            "own": use("draw", {"c": "b", "z": "y"}, **common, vertex="v.vert"),
+            "patches": use("draw", {"c": "c", "z": "x"}, **common, **patches),
+            "depth": use("draw", {"z": "only"}, queues=["opaque"]),
         },
-        "outputs": {"a": {"file": "a.npy"}, "b": {"file": "b.npy"}},
+        "outputs": {name: {"file": f"{name}.npy"} for name in ("a", "b", "c", "only")},
     }
     shaders = {"v.vert": vertex, "f.frag": fragment, "c.tesc": control, "e.tese": evaluation}
     images = run_graph(tmp_path, graph, shaders).images
     assert (images["a"] > 0).mean() > 0.5
-    assert np.allclose(images["a"], images["b"], rtol=1e-5, atol=0)
+    assert np.array_equal(images["only"], images["a"])
+    assert np.allclose(images["b"], images["a"], rtol=1e-5, atol=0)
+    assert np.allclose(images["c"], images["a"], rtol=1e-5, atol=0)
 
 
 # ---------------------------------------------------------------- copy, clear
