@@ -44,8 +44,10 @@ def compare(first: Path, second: Path) -> None:
         for file in (a, b):
             record = json.loads(str(file["record"]))
             timing = record["timing"]
-            print(f"- {record['device']['renderer']}, {record['device']['version']}: clock `{timing['clock']['name']}`, "
-                  f"demo frame {timing['frame_ms']['median']:.3f} ms, proof {timing['clock']['proof']}")
+            print(
+                f"- {record['device']['renderer']}, {record['device']['version']}: clock `{timing['clock']['name']}`, "
+                f"demo frame {timing['frame_ms']['median']:.3f} ms, proof {timing['clock']['proof']}"
+            )
         print("\n| image | largest difference | mean | pixels off by more than 2 |\n|---|---|---|---|")
         for name in sorted(set(a.files) & set(b.files) - {"record"}):
             x, y = a[name].astype(np.float64), b[name].astype(np.float64)

@@ -1,6 +1,6 @@
 """How long `rg --help` takes beside the typer import it stands on, and what `rg validate` imports.
 
-    python benchmarks/startup.py
+python benchmarks/startup.py
 """
 
 from __future__ import annotations

@@ -34,7 +34,9 @@ def _version(show: bool) -> None:
 
 @app.callback()
 def _root(
-    version: bool = typer.Option(False, "--version", callback=_version, is_eager=True, help="Print the version and exit."),
+    version: bool = typer.Option(
+        False, "--version", callback=_version, is_eager=True, help="Print the version and exit."
+    ),
 ) -> None:
     """Options before the command."""
 
@@ -44,7 +46,7 @@ for group in (render, inspect, catalogue, environment, scaffold):
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run the command line and exit: 0 fine, 1 findings, 2 usage or unreadable input, 3 environment, 130 interrupted."""
+    """Run the command line and exit: 0 fine, 1 findings, 2 usage or unreadable input, 3 environment, 130 Ctrl-C."""
     try:
         app(args=None if arguments is None else list(arguments), prog_name="rg", standalone_mode=True)
     except KeyboardInterrupt:

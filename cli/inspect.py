@@ -118,7 +118,9 @@ def graph(
 
 def explain(
     subject: Annotated[str, typer.Argument(help="A code (RG203), or a graph to explain the decisions of.")],
-    name: Annotated[str | None, typer.Argument(help="A pass, sub-pass or resource of the graph; all when left out.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(help="A pass, sub-pass or resource of the graph; all when left out.")
+    ] = None,
     overrides: SetOption = None,
     scene: SceneOption = None,
     full: FullOption = False,

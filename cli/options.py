@@ -21,7 +21,10 @@ SetOption = Annotated[
     typer.Option("--set", metavar="PATH=VALUE", help="Override a value: passes.occlude.set.radius=2 (repeatable)."),
 ]
 SceneOption = Annotated[
-    str | None, typer.Option("--scene", metavar="SOURCE", help="Draw this scene instead: atrium, cornell, spheres or a .gltf/.glb file.")
+    str | None,
+    typer.Option(
+        "--scene", metavar="SOURCE", help="Draw this scene instead: atrium, cornell, spheres or a .gltf/.glb file."
+    ),
 ]
 SizeOption = Annotated[str | None, typer.Option("--size", metavar="WxH", help="Frame size in pixels, as 640x360.")]
 FramesOption = Annotated[int | None, typer.Option("--frames", min=1, max=10000, help="Frames to render.")]
@@ -30,7 +33,10 @@ FullOption = Annotated[bool, typer.Option("--full", help="Do not specialise on t
 NoAliasOption = Annotated[bool, typer.Option("--no-alias", help="Give every target memory of its own.")]
 NoCullOption = Annotated[bool, typer.Option("--no-cull", help="Run passes that nothing reads.")]
 OrderOption = Annotated[
-    str, typer.Option("--order", metavar="NAME", help="Pass order: default, memory (search for the smallest peak) or random.")
+    str,
+    typer.Option(
+        "--order", metavar="NAME", help="Pass order: default, memory (search for the smallest peak) or random."
+    ),
 ]
 SeedOption = Annotated[int, typer.Option("--order-seed", min=0, help="Seed of the random order.")]
 

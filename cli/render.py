@@ -32,12 +32,16 @@ def register(app: typer.Typer) -> None:
 
 def render(
     graph: GraphArgument,
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Folder for images and records.")] = Path("out"),
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Folder for images and records.")
+    ] = Path("out"),
     overrides: SetOption = None,
     scene: SceneOption = None,
     size: SizeOption = None,
     frames: FramesOption = None,
-    samples: Annotated[int, typer.Option("--samples", min=0, max=1000, help="Extra frames timed after the last one.")] = 5,
+    samples: Annotated[
+        int, typer.Option("--samples", min=0, max=1000, help="Extra frames timed after the last one.")
+    ] = 5,
     capture: Annotated[
         list[str] | None, typer.Option("--capture", metavar="RESOURCE", help="Save this target too (repeatable).")
     ] = None,
@@ -45,10 +49,14 @@ def render(
     no_alias: NoAliasOption = False,
     no_cull: NoCullOption = False,
     full: FullOption = False,
-    check_finite: Annotated[bool, typer.Option("--check-finite", help="Stop at the first NaN or Inf a pass writes.")] = False,
+    check_finite: Annotated[
+        bool, typer.Option("--check-finite", help="Stop at the first NaN or Inf a pass writes.")
+    ] = False,
     order: OrderOption = "default",
     order_seed: SeedOption = 0,
-    device: Annotated[int | None, typer.Option("--device", min=0, help="EGL device index; `rg doctor` lists them.")] = None,
+    device: Annotated[
+        int | None, typer.Option("--device", min=0, help="EGL device index; `rg doctor` lists them.")
+    ] = None,
     format: FormatOption = Format.TEXT,
 ) -> None:
     """Run a graph; write its images, timing.json and resources.json, and print both as tables."""

@@ -33,7 +33,8 @@ def graph(folder: Path, size: tuple[int, int]) -> Path:
     lines += [f"  t{i}: {{format: rgba8}}" for i in range(PASSES)]
     lines += ["passes:", "  p0: {node: fullscreen, write: {o_color: t0}, set: {shader: first.frag}}"]
     lines += [
-        f"  p{i}: {{node: fullscreen, read: {{u_source: t{i - 1}}}, write: {{o_color: t{i}}}, set: {{shader: chain.frag}}}}"
+        f"  p{i}: {{node: fullscreen, read: {{u_source: t{i - 1}}}, write: {{o_color: t{i}}}, "
+        "set: {shader: chain.frag}}"
         for i in range(1, PASSES)
     ]
     lines += [f"outputs: {{t{PASSES - 1}: {{file: chain.png}}}}"]
@@ -97,7 +98,8 @@ def main() -> None:
         planned, by_hand = measure(device, size)
         ratio = median(planned) / median(by_hand)
         print(
-            f"{size[0]:5}x{size[1]:<5} plan {median(planned):8.3f} ms  by hand {median(by_hand):8.3f} ms  ratio {ratio:.3f}"
+            f"{size[0]:5}x{size[1]:<5} plan {median(planned):8.3f} ms  by hand {median(by_hand):8.3f} ms  "
+            f"ratio {ratio:.3f}"
         )
 
 

@@ -53,9 +53,8 @@ def _port(port: Port) -> dict[str, Any]:
 
 
 def _parameter(name: str, entry: dict[str, Any], required: bool) -> dict[str, Any]:
-    bounds = {
-        key: entry[key] for key in ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum") if key in entry
-    }
+    limits = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
+    bounds: dict[str, Any] = {key: entry[key] for key in limits if key in entry}
     return {
         "help": entry.get("description", ""),
         "type": entry.get("type", "any of several"),

@@ -11,9 +11,7 @@ from rendergraph.plan.memory_order import MemorySearch, pick_ready
 from rendergraph.plan.plan import PlanOptions
 
 
-def order(
-    index: Index, flow: Flow, live: list[bool], options: PlanOptions
-) -> tuple[list[int], list[Decision]]:
+def order(index: Index, flow: Flow, live: list[bool], options: PlanOptions) -> tuple[list[int], list[Decision]]:
     """The live sub-passes in the order ``options.order`` asks for; the same for any order of the file.
 
     ``ValueError`` for an unknown kind of order.

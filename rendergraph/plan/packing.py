@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 #: Bound on the search, in comparisons of two ranges. Small heaps get hundreds of trials, huge ones a single one.
-EFFORT = 60_000
+EFFORT = 20_000
 #: Above this many pairs that live together, neighbours are not listed and ranges are placed as they come.
 MAX_PAIRS = 400_000
 

@@ -107,15 +107,14 @@ def cell_histories(
 
 def feedback(subpass: SubPass) -> list[Access]:
     """The accesses by which a draw samples texels that it also renders to."""
-    targets = [a for a in subpass.accesses if a.usage is Usage.COLOR or a.usage is Usage.DEPTH]
-    if not targets:
+    names = {a.resource for a in subpass.accesses}
+    if len(names) == len(subpass.accesses):  # nothing is touched twice: the usual case
         return []
-    names = {a.resource for a in targets}
+    targets = [a for a in subpass.accesses if a.usage is Usage.COLOR or a.usage is Usage.DEPTH]
     return [
         a
         for a in subpass.accesses
         if a.usage is Usage.SAMPLED
-        and a.resource in names
         and any(t.resource == a.resource and _meet(t.mip, a.mip) and _meet(t.layer, a.layer) for t in targets)
     ]
 
@@ -156,8 +155,7 @@ def _split_heap(buffer_of: Mapping[str, BufferRange]) -> dict[str, range]:
     """Cut the heap at every start and end of a buffer: each buffer is then a run of whole pieces."""
     cuts = sorted({edge for b in buffer_of.values() for edge in (b.offset, b.offset + b.bytes)})
     return {
-        name: range(bisect_left(cuts, b.offset), bisect_left(cuts, b.offset + b.bytes))
-        for name, b in buffer_of.items()
+        name: range(bisect_left(cuts, b.offset), bisect_left(cuts, b.offset + b.bytes)) for name, b in buffer_of.items()
     }
 
 

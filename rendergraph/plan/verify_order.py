@@ -29,8 +29,10 @@ def check_order(plan: Plan) -> list[str]:
     wanted = _wanted(plan.graph, spots)
     for spot, users in spots.items():
         faults += _check_within(spot, users)
-        faults += _check_between(spot, users, reach)
-        faults += _check_culled(spot, users, reach, spot[0] in wanted)
+        if len(users) > 1:
+            faults += _check_between(spot, users, reach)
+        if gone:
+            faults += _check_culled(spot, users, reach, spot[0] in wanted)
     kept = (step.name for found in plan.graph.passes.values() if found.keep for step in found.subpasses)
     return faults + [f"culled: {name} is to be kept" for name in kept if name in gone]
 
@@ -80,32 +82,39 @@ def _check_within(spot: Spot, users: Users) -> Iterator[str]:
 
 def _check_between(spot: Spot, users: Users, reach: Reach) -> Iterator[str]:
     """Writers follow on each other, nobody looks on while one is writing, and who comes before a writer is bound to."""
-    if len(users) == 1:
-        return
     writers: list[tuple[int, int, int, int, str]] = []  # first and last write, first and last touch, name
     readers: list[tuple[int, int, str]] = []
+    contested = 0
     for name, user in users.items():
+        contested += user.writes
         touched = [at for at, _, _ in user.steps if at >= 0]
-        wrote = [at for at, _, writes in user.steps if at >= 0 and writes]
+        wrote = [at for at, _, writes in user.steps if writes and at >= 0] if user.writes else []
         if wrote:
             writers.append((min(wrote), max(wrote), min(touched), max(touched), name))
         elif touched:
             readers.append((min(touched), max(touched), name))
+    if not writers:
+        return
+    if contested == 1:
+        done = writers[0][1]
+        for first, _, name in readers:
+            if first <= done:
+                yield f"order: {name} reads {spot[0]} before {writers[0][4]} has written it"
+        return
     writers.sort()
-    contested = sum(user.writes for user in users.values()) > 1
     for (_, wrote_last, _, last, name), (wrote_first, _, first, _, other) in pairwise(writers):
         if first < wrote_last or wrote_first < last:
             yield f"order: {other} touches {spot[0]} before {name} is done with it"
         if not reach(name, other):
             yield f"order: {name} writes {spot[0]} before {other}, with no reason to"
     for first, last, name in readers:
-        done = bisect_right(writers, (last,))
-        if done and writers[done - 1][1] > first:
-            yield f"order: {name} touches {spot[0]} while {writers[done - 1][4]} is writing it"
-        if done and contested and reach(name, writers[done - 1][4]):
-            yield f"order: {name} reads {spot[0]} after {writers[done - 1][4]}, but is bound to run before"
-        if done < len(writers) and not (contested and reach(name, writers[done][4])):
-            yield f"order: {name} reads {spot[0]} before {writers[done][4]} writes it, with no reason to"
+        at = bisect_right(writers, (last,))
+        if at and writers[at - 1][1] > first:
+            yield f"order: {name} touches {spot[0]} while {writers[at - 1][4]} is writing it"
+        if at and reach(name, writers[at - 1][4]):
+            yield f"order: {name} reads {spot[0]} after {writers[at - 1][4]}, but is bound to run before"
+        if at < len(writers) and not reach(name, writers[at][4]):
+            yield f"order: {name} reads {spot[0]} before {writers[at][4]} writes it, with no reason to"
 
 
 def _check_culled(spot: Spot, users: Users, reach: Reach, wanted: bool) -> Iterator[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 from rendergraph.plan.graph import Graph, TextureDesc
@@ -14,23 +14,23 @@ Spot = tuple[str, int, int]  # a resource and one mip and layer that stands for 
 
 @dataclass(slots=True)
 class User:
-    """What one pass does at one spot: its steps in program order as (position or -1, loads, writes)."""
+    """What one pass does at one spot: its steps in program order as (position or -1, loads, writes).
 
-    steps: list[tuple[int, bool, bool]]
+    ``defines``: it writes, and begins afresh; ``replaces``: nothing from before is left when it is done.
+    """
 
-    @property
-    def writes(self) -> bool:
-        return any(writes for _, _, writes in self.steps)
+    steps: list[tuple[int, bool, bool]] = field(default_factory=list)
+    writes: bool = False
+    defines: bool = False
+    replaces: bool = False
 
-    @property
-    def defines(self) -> bool:
-        """Whether it begins afresh."""
-        return self.writes and not self.steps[0][1]
-
-    @property
-    def replaces(self) -> bool:
-        """Whether nothing from before is left when it is done."""
-        return any(writes and not loads for _, loads, writes in self.steps)
+    def add(self, position: int, loads: bool, writes: bool) -> None:
+        """The next step."""
+        if writes and not loads:
+            self.replaces = True
+            self.defines = self.defines or not self.steps
+        self.writes = self.writes or writes
+        self.steps.append((position, loads, writes))
 
     @property
     def borrows(self) -> bool:
@@ -89,10 +89,10 @@ def find_users(graph: Graph, position: dict[str, int]) -> dict[Spot, Users]:
                         touched[spot] = loads, writes
         for spot, (loads, writes) in touched.items():
             users = spots[spot]
-            if owner in users:
-                users[owner].steps.append((at, loads, writes))
-            else:
-                users[owner] = User([(at, loads, writes)])
+            user = users.get(owner)
+            if user is None:
+                user = users[owner] = User()
+            user.add(at, loads, writes)
     return spots
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from html import escape
+from itertools import pairwise
 
 from rendergraph.plan.plan import Plan
 from rendergraph.report.layered import Box, lay_out
@@ -15,7 +16,7 @@ from rendergraph.report.layered import Box, lay_out
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """One content of a resource: written by pass ``writer`` (``None``: a file's, or the last frame's), read by others."""
+    """One content of a resource, written by pass ``writer`` (``None``: a file's, or the last frame's)."""
 
     key: str
     resource: str
@@ -104,7 +105,10 @@ def dot(graph: Drawing) -> str:
         if content.writer is not None:
             lines.append(f'    "{content.writer}" -> {content.key};')
         lines += [f'    {content.key} -> "{reader}";' for reader in content.readers]
-    lines += [f'    {source} -> {target} [style=dashed, constraint=false, label="next frame"];' for source, target in graph.history]
+    lines += [
+        f'    {source} -> {target} [style=dashed, constraint=false, label="next frame"];'
+        for source, target in graph.history
+    ]
     lines.append("}")
     return "\n".join(lines)
 
@@ -185,7 +189,7 @@ def _text(box: Box, down: float, kind: str, text: str) -> str:
 
 def _smooth(points: tuple[tuple[float, float], ...]) -> str:
     path = f"M{points[0][0]:.1f} {points[0][1]:.1f}"
-    for (x0, y0), (x1, y1) in zip(points, points[1:], strict=False):
+    for (x0, y0), (x1, y1) in pairwise(points):
         middle = (x0 + x1) / 2
         path += f"C{middle:.1f} {y0:.1f} {middle:.1f} {y1:.1f} {x1:.1f} {y1:.1f}"
     return path
@@ -195,6 +199,7 @@ def _next_frame(source: Box, target: Box, low: float) -> str:
     x0, y0 = source.x + source.width / 2, source.y + source.height
     x1, y1 = target.x + target.width / 2, target.y + target.height
     return (
-        f'<path class="edge old" d="M{x0:.1f} {y0:.1f}C{x0:.1f} {low:.1f} {x0:.1f} {low:.1f} {(x0 + x1) / 2:.1f} {low:.1f}'
+        f'<path class="edge old" d="M{x0:.1f} {y0:.1f}'
+        f"C{x0:.1f} {low:.1f} {x0:.1f} {low:.1f} {(x0 + x1) / 2:.1f} {low:.1f}"
         f'S{x1:.1f} {low:.1f} {x1:.1f} {y1:.1f}" marker-end="url(#tip)"/>'
     )

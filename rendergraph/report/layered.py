@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 _SWEEPS = 12
 _RELAXATIONS = 40
@@ -46,7 +47,7 @@ def lay_out(
     columns = _columns(list(sizes), edges)
     nodes = dict(sizes)
     chains = {edge: _chain(edge, columns, nodes) for edge in edges}
-    links = [pair for chain in chains.values() for pair in zip(chain, chain[1:], strict=False)]
+    links = [pair for chain in chains.values() for pair in pairwise(chain)]
     rows = _rows(columns, links)
     tops = _tops(rows, nodes, links, row_gap)
     lift = margin - min(tops.values(), default=0.0)
@@ -98,8 +99,10 @@ def _rows(columns: dict[str, int], links: list[tuple[str, str]]) -> list[list[st
         forward = sweep % 2 == 0
         neighbours = before if forward else after
         for column in rows if forward else reversed(rows):
-            place = {name: index for row in rows for index, name in enumerate(row)}
-            column.sort(key=lambda name: (_mean([place[n] for n in neighbours.get(name, ())], place[name]), place[name]))
+            place = {name: index for line in rows for index, name in enumerate(line)}
+            column.sort(
+                key=lambda name: (_mean([place[n] for n in neighbours.get(name, ())], place[name]), place[name])
+            )
     return rows
 
 
@@ -124,7 +127,8 @@ def _tops(
     for _ in range(_RELAXATIONS):
         for column in rows:
             wanted = [
-                sum(centre[n] for n in near[name]) / len(near[name]) if name in near else centre[name] for name in column
+                sum(centre[n] for n in near[name]) / len(near[name]) if name in near else centre[name]
+                for name in column
             ]
             for name, value in zip(column, _separated(column, wanted, nodes, gap), strict=True):
                 centre[name] = value
@@ -135,7 +139,7 @@ def _separated(
     column: list[str], wanted: list[float], nodes: dict[str, tuple[float, float]], gap: float
 ) -> list[float]:
     """The nearest centres to those wanted that do not overlap: pushed down from the top and up from the bottom, averaged."""
-    need = [(nodes[a][1] + nodes[b][1]) / 2 + gap for a, b in zip(column, column[1:], strict=False)]
+    need = [(nodes[a][1] + nodes[b][1]) / 2 + gap for a, b in pairwise(column)]
     down, up = list(wanted), list(wanted)
     for index, distance in enumerate(need):
         down[index + 1] = max(down[index + 1], down[index] + distance)

@@ -43,6 +43,5 @@ def node_page(node: dict[str, Any]) -> RenderableType:
 def _range(entry: dict[str, Any]) -> str:
     if entry["choices"]:
         return " | ".join(map(str, entry["choices"]))
-    low = f"≥ {entry['minimum']:g}" if "minimum" in entry else f"> {entry['exclusiveMinimum']:g}" if "exclusiveMinimum" in entry else ""
-    high = f"≤ {entry['maximum']:g}" if "maximum" in entry else f"< {entry['exclusiveMaximum']:g}" if "exclusiveMaximum" in entry else ""
-    return ", ".join(filter(None, (low, high)))
+    signs = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
+    return ", ".join(f"{sign} {entry[key]:g}" for key, sign in signs.items() if key in entry)

@@ -30,13 +30,21 @@ def timing_table(record: dict[str, Any]) -> RenderableType:
     medians = [p["ms"]["median"] or 0.0 for p in record["passes"]]
     total, longest = sum(medians) or 1.0, max(medians) or 1.0
     table = Table(title=f"Pass times · {record['clock']['name']}", title_justify="left", box=None, pad_edge=False)
-    for heading, justify in (("pass", "left"), ("node", "left"), ("median ms", "right"), ("range", "right"), ("", "left")):
+    for heading, justify in (
+        ("pass", "left"),
+        ("node", "left"),
+        ("median ms", "right"),
+        ("range", "right"),
+        ("", "left"),
+    ):
         table.add_column(heading, justify=justify, no_wrap=True)  # type: ignore[arg-type]
     for entry, value in zip(record["passes"], medians, strict=True):
         low, high = entry["ms"]["min"], entry["ms"]["max"]
         span = f"{low:.3f} .. {high:.3f}"
         bar = "█" * max(1, round(_BAR * value / longest))
-        table.add_row(entry["name"], entry["node"], f"{value:.3f}", span, Text(f"{bar} {100 * value / total:.0f} %", "cyan"))
+        table.add_row(
+            entry["name"], entry["node"], f"{value:.3f}", span, Text(f"{bar} {100 * value / total:.0f} %", "cyan")
+        )
     lines = [f"sum of passes {total:.3f} ms, whole frame {frame['median']:.3f} ms", *notes]
     return Group(table, Text("\n".join(lines), style="dim"))
 
@@ -45,7 +53,13 @@ def lifetime_table(record: dict[str, Any]) -> RenderableType:
     """One row a resource: format, size, where it lives, and a bar over the sub-passes it is alive in."""
     count = max(1, len(record["order"]))
     table = Table(title="Target lifetimes", title_justify="left", box=None, pad_edge=False)
-    for heading, justify in (("resource", "left"), ("format", "left"), ("size", "right"), ("bytes", "right"), ("slot", "right")):
+    for heading, justify in (
+        ("resource", "left"),
+        ("format", "left"),
+        ("size", "right"),
+        ("bytes", "right"),
+        ("slot", "right"),
+    ):
         table.add_column(heading, justify=justify, no_wrap=True)  # type: ignore[arg-type]
     table.add_column(f"passes 1..{count}", no_wrap=True)
     for entry in sorted(record["resources"], key=lambda e: (e["first_index"], e["last_index"], e["name"])):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import platform
 from collections.abc import Sequence
+from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -28,7 +29,7 @@ def spread(samples: Sequence[int]) -> dict[str, Any]:
 
 
 def timing_record(result: FrameResult, title: str = "") -> dict[str, Any]:
-    """The record as JSON-ready data. All times are milliseconds; a pass is the sum of its sub-passes, frame by frame."""
+    """The record as JSON-ready data; times in milliseconds, a pass's the sum of its sub-passes', frame by frame."""
     graph, times = result.plan.graph, result.times
     steps = {step.name: step for step in times.steps}
     passes: list[dict[str, Any]] = []
@@ -89,7 +90,7 @@ def timing_record(result: FrameResult, title: str = "") -> dict[str, Any]:
 
 def _cpu_name() -> str:
     try:
-        with open("/proc/cpuinfo", encoding="utf-8") as lines:
-            return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), "")
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), "")
     except OSError:
         return platform.processor()

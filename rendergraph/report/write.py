@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from rendergraph.document.load import Document
+from rendergraph.document.whole_files import whole_file
 from rendergraph.report.resources import resources_record
 from rendergraph.report.timing import timing_record
 from rendergraph.run.image_files import write_image
 from rendergraph.run.result import FrameResult
-from rendergraph.document.whole_files import whole_file
 
 
 @dataclass(frozen=True, slots=True)

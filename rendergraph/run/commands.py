@@ -260,4 +260,3 @@ class CommandBuilder:
                 made = create_framebuffer(self._device, [(texture, 0, at)], None, texture.label)
             self._framebuffers[key] = made
         return self._framebuffers[key]
-

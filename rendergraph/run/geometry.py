@@ -18,6 +18,7 @@ from rendergraph.device.context import Device
 from rendergraph.device.programs import LinkedProgram
 from rendergraph.device.textures import Texture, create_texture, upload_texture
 from rendergraph.plan.graph import Target, TextureDesc
+from rendergraph.scene.draw_queues import draw_runs
 from rendergraph.scene.gpu_layout import (
     TexturePlacement,
     pack_instances,
@@ -25,7 +26,6 @@ from rendergraph.scene.gpu_layout import (
     pack_materials,
     place_textures,
 )
-from rendergraph.scene.draw_queues import draw_runs
 from rendergraph.scene.scene import Camera, Scene
 
 #: Vertex inputs: name, components, offset in the attribute stream (positions have a stream of their own, which is all

@@ -71,6 +71,7 @@ def _load(document: Document, source: str | None) -> LoadedScene | None:
         position=document.position("scene", "source") if source is None else None,
         camera_position=document.position("scene", "camera"),
         keep_camera=any(
-            document.position("scene", "camera", key).file.startswith(SET_PREFIX) for key in ("position", "target", "name")
+            document.position("scene", "camera", key).file.startswith(SET_PREFIX)
+            for key in ("position", "target", "name")
         ),
     )

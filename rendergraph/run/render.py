@@ -123,4 +123,3 @@ def frame_cameras(planned: PlannedDocument) -> list[Camera]:
     if not turns:
         return [camera] * count
     return [orbit(camera, turns * index / count) for index in range(count)]
-

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from rendergraph.device import enums
-from rendergraph.device.buffers import Buffer, create_buffer
+from rendergraph.device.buffers import create_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.programs import LinkedProgram, compile_program
 from rendergraph.plan.graph import DrawScene
@@ -90,9 +90,7 @@ class Runner:
             self._geometry.begin_frame(at)
         return self._commands[index % len(self._commands)]
 
-    def run_frame(
-        self, index: int, *, capture: Iterable[str] = (), check_finite: bool = False
-    ) -> dict[str, Pixels]:
+    def run_frame(self, index: int, *, capture: Iterable[str] = (), check_finite: bool = False) -> dict[str, Pixels]:
         """Run one frame; give back the resources to ``capture``, each read right after the last sub-pass that uses it,
         before another may take its memory.
 

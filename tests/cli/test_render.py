@@ -48,7 +48,9 @@ def test_render_json_on_stdout(rg: Rg, graph: Path, tmp_path: Path) -> None:
 def test_set_and_size_and_frames(rg: Rg, graph: Path, tmp_path: Path) -> None:
     out = tmp_path / "o"
     set_ = "outputs.image.file=frame_{frame}.png"
-    outcome = rg("render", str(graph), "-o", str(out), "--size", "10x20", "--frames", "2", "--set", set_, "--samples", "0")
+    outcome = rg(
+        "render", str(graph), "-o", str(out), "--size", "10x20", "--frames", "2", "--set", set_, "--samples", "0"
+    )
     assert outcome.code == 0, outcome.err
     assert {p.name for p in out.glob("*.png")} == {"frame_0000.png", "frame_0001.png"}
     with Image.open(out / "frame_0001.png") as image:
@@ -56,7 +58,9 @@ def test_set_and_size_and_frames(rg: Rg, graph: Path, tmp_path: Path) -> None:
 
 
 def test_a_shader_that_does_not_compile_names_its_line(rg: Rg, graph: Path, tmp_path: Path) -> None:
-    (tmp_path / "paint.frag").write_text("#version 450\nout vec4 o_color;\nvoid main() {\n    o_color = vec5(1.0);\n}\n")
+    (tmp_path / "paint.frag").write_text(
+        "#version 450\nout vec4 o_color;\nvoid main() {\n    o_color = vec5(1.0);\n}\n"
+    )
     outcome = rg("render", str(graph), "-o", str(tmp_path / "o"))
     assert outcome.code == 1
     assert "paint.frag:4:" in outcome.err

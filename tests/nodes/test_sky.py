@@ -232,3 +232,34 @@ def test_only_where_depth_is_at_the_far_plane(device: Device, tmp_path: Path, de
     np.testing.assert_array_equal(got[:, :48], everywhere[:, :48])
     assert (got[:, 48:] == 0.0).all()
     assert (everywhere[:, 48:, :3] > 0.0).all()
+
+
+@pytest.mark.gpu
+def test_multisampled_target_resolves_to_the_same_image(device: Device, tmp_path: Path) -> None:
+    graph: dict[str, Any] = {
+        "frame": {"size": [WIDTH, HEIGHT]},
+        "scene": {"source": "spheres", "detail": 0.0, "lights": {"sun": {"direction": [-0.1, -1, -0.1]}}},
+        "resources": {
+            "many": {"format": "rgba16f", "samples": 4},
+            "depth": {"format": "d32f", "samples": 4},
+            "one": {"format": "rgba16f"},
+        },
+        "passes": {
+            "far": {"node": "clear", "write": {"target": "depth"}, "set": {"value": 1}},
+            "start": {"node": "clear", "write": {"target": "many"}},
+            "sky": {"node": "sky", "read": {"depth": "depth"}, "write": {"color": "many"}, "after": ["start"]},
+            "resolve": {
+                "node": "copy", "read": {"source": "many"}, "write": {"destination": "one"}, "set": {"blit": True},
+            },
+        },
+        "outputs": {"one": {"file": "one.npy"}},
+    }  # fmt: skip
+    resolved = run_graph(tmp_path, graph, {}).images["one"]
+    graph["resources"] = {"one": {"format": "rgba16f"}}
+    graph["passes"] = {
+        "start": {"node": "clear", "write": {"target": "one"}},
+        "sky": {"node": "sky", "write": {"color": "one"}, "after": ["start"]},
+    }
+    single = run_graph(tmp_path, graph, {}).images["one"]
+    np.testing.assert_allclose(resolved.astype(float), single.astype(float), rtol=2e-3)
+    assert single[..., :3].min() > 0

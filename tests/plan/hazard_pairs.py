@@ -93,7 +93,9 @@ def _replaced(events: list[Event], after: int, before: int) -> set[tuple[object,
         access = event.access
         if after < event.time < before and access.usage.writes and not access.usage.incoherent and not access.load:
             beside = [other for other in events if other.time == event.time and other is not event]
-            loaded = {atom for other in beside if other.access.load or other.access.usage.incoherent for atom in other.atoms}
+            loaded = {
+                atom for other in beside if other.access.load or other.access.usage.incoherent for atom in other.atoms
+            }
             gone |= event.atoms - loaded
     return gone
 

@@ -70,7 +70,12 @@ def make_graph(
     Outputs and sources of history are persistent, as expansion makes them.
     """
     descs, history, kinds = descs or {}, history or {}, kinds or {}
-    names = {a.resource for p in passes for s in p.subpasses for a in s.accesses} | {*outputs, *history, *descs}
+    names = {a.resource for p in passes for s in p.subpasses for a in s.accesses} | {
+        *outputs,
+        *history,
+        *history.values(),
+        *descs,
+    }
     resources = {}
     for name in names:
         kind = Kind.PERSISTENT if name in outputs or name in history.values() else Kind.TRANSIENT
@@ -167,7 +172,9 @@ def _step(
 
 
 def _desc(draw: st.DrawFn) -> TextureDesc | BufferDesc:
-    shape = draw(st.sampled_from(["plain", "plain", "plain", "mips", "layers", "depth", "multisampled", "buffer", "buffer"]))
+    shape = draw(
+        st.sampled_from(["plain", "plain", "plain", "mips", "layers", "depth", "multisampled", "buffer", "buffer"])
+    )
     size = draw(st.sampled_from([8, 16]))
     match shape:
         case "buffer":
@@ -210,9 +217,7 @@ def _add(draw: st.DrawFn, desc: TextureDesc | BufferDesc, target: str) -> list[A
     return [added]
 
 
-def _define(
-    draw: st.DrawFn, desc: TextureDesc | BufferDesc, target: str, accesses: list[Access]
-) -> list[list[Access]]:
+def _define(draw: st.DrawFn, desc: TextureDesc | BufferDesc, target: str, accesses: list[Access]) -> list[list[Access]]:
     """Replace everything, in one sub-pass or mip by mip (each level read by the next)."""
     if isinstance(desc, BufferDesc):
         return [[*accesses, writes(target, draw(st.sampled_from(_BUFFER_WRITES)))]]

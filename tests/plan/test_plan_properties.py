@@ -15,9 +15,7 @@ from rendergraph.plan.compile import compile_plan
 from rendergraph.plan.graph import BufferDesc, Graph, Kind
 from rendergraph.plan.plan import Plan, PlanOptions
 
-bounded = settings(
-    max_examples=150, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
-)
+bounded = settings(max_examples=80, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 
 
 def plan_of(graph: Graph, **options: object) -> Plan:

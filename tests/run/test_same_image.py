@@ -64,9 +64,7 @@ def test_shuffled_passes_give_the_same_plan_and_image(plain: np.ndarray, tmp_pat
     shuffled = tmp_path / "shuffled.yaml"
     shuffled.write_text(yaml.safe_dump(document, sort_keys=False))
     assert (image(OPTIONS, shuffled) == plain).all()
-    orders = [
-        [s.name for s in render_document(load_document(p, SMALL), OPTIONS).plan.order] for p in (GRAPH, shuffled)
-    ]
+    orders = [[s.name for s in render_document(load_document(p, SMALL), OPTIONS).plan.order] for p in (GRAPH, shuffled)]
     assert orders[0] == orders[1]
 
 

@@ -33,10 +33,11 @@ _LAMPLIGHT = (2.6, 1.5, 0.65)
 
 def furnish(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.Generator, detail: float) -> list[Light]:
     """Place all furniture; returns the lanterns' lights."""
-    _curtains(builder, materials, rng, detail)
-    _hangings(builder, materials, rng, detail)
+    cloth, dyes, leaves, places = rng.spawn(4)
+    _curtains(builder, materials, cloth, detail)
+    _hangings(builder, materials, dyes, detail)
     _balustrades(builder, materials, detail)
-    _plants(builder, materials, rng, detail)
+    _plants(builder, materials, leaves, places, detail)
     builder.place(builder.mesh(furnishings.fountain(detail), materials.stone), name="fountain")
     builder.place(builder.mesh(furnishings.fountain_water(detail).mapped(0.5), materials.water), name="water")
     return _lanterns(builder, materials, detail)
@@ -125,23 +126,31 @@ def _balustrades(builder: SceneBuilder, materials: AtriumMaterials, detail: floa
         builder.place(rails, world, "balustrade rails")
 
 
-def _plants(builder: SceneBuilder, materials: AtriumMaterials, rng: np.random.Generator, detail: float) -> None:
-    """Palms in the courtyard's corners and around the fountain, shrubs before the columns."""
+def _plants(
+    builder: SceneBuilder,
+    materials: AtriumMaterials,
+    leaves: np.random.Generator,
+    spots: np.random.Generator,
+    detail: float,
+) -> None:
+    """Palms in the arcade's corners and around the fountain, shrubs before the columns."""
     pot = builder.mesh(furnishings.pot(detail), materials.terracotta)
     soil = builder.mesh(furnishings.soil(detail), materials.soil)
-    palms = [builder.mesh(furnishings.palm(rng, detail), materials.frond) for _ in range(2)]
-    shrubs = [builder.mesh(furnishings.shrub(rng, detail), materials.leaf) for _ in range(2)]
-    x, z = HALF_X - 0.95, HALF_Z - 0.95
+    palms = [builder.mesh(furnishings.palm(leaves, detail), materials.frond) for _ in range(2)]
+    shrubs = [builder.mesh(furnishings.shrub(leaves, detail), materials.leaf) for _ in range(2)]
+    x, z = HALF_X + 1.2, HALF_Z + 1.2
     palm_places = [(i * x, j * z) for i in (-1, 1) for j in (-1, 1)] + [
         (i * 3.0, j * 1.9) for i in (-1, 1) for j in (-1, 1)
     ]
     shrub_places = [(-HALF_X + BAY * k, side * (HALF_Z - 0.75)) for k in range(1, 7) for side in (-1, 1)]
-    for places, plants, large in ((palm_places, palms, 1.25), (shrub_places, shrubs, 0.85)):
+    for places, plants, large in ((palm_places, palms, 1.0), (shrub_places, shrubs, 0.85)):
         for number, (px, pz) in enumerate(places):
             by_fountain = plants is palms and number >= 4
-            scale = large * (0.68 if by_fountain else 1.0) * float(rng.uniform(0.9, 1.1))
-            jitter = rng.uniform(-0.12, 0.12, 2)
-            world = placement(px + jitter[0], 0.0, pz + jitter[1], turn=float(rng.uniform(0.0, 2.0 * pi)), scale=scale)
+            scale = large * (0.85 if by_fountain else 1.0) * float(spots.uniform(0.9, 1.1))
+            jitter = spots.uniform(-0.12, 0.12, 2)
+            world = placement(
+                px + jitter[0], 0.0, pz + jitter[1], turn=float(spots.uniform(0.0, 2.0 * pi)), scale=scale
+            )
             builder.place(pot, world, "pot")
             builder.place(soil, world, "soil")
             builder.place(plants[number % len(plants)], world, "plant")

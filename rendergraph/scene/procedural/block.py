@@ -49,8 +49,8 @@ def _face_axes(axis: int, side: float) -> tuple[F64, F64]:
 @cache
 def _template(chamfered: bool) -> _Template:
     axes = np.eye(3)
-    # A vertex: sign, outer, normal, tangent, v axis. Points are tried at half = 2, half - bevel = 1.
-    vertices: list[tuple[F64, F64, F64, F64, F64]] = []
+    # A vertex: sign, reach, normal, tangent, u axis, v axis. Points are tried at half = 2, half - bevel = 1.
+    vertices: list[tuple[F64, F64, F64, F64, F64, F64]] = []
     triangles: list[tuple[int, ...]] = []
 
     def polygon(points: list[F64], normals: list[F64], tangents: list[F64]) -> None:
@@ -58,9 +58,10 @@ def _template(chamfered: bool) -> _Template:
         if np.dot(np.cross(points[1] - points[0], points[2] - points[0]), facing) < 0.0:
             points, normals, tangents = points[::-1], normals[::-1], tangents[::-1]
         first = len(vertices)
-        down = -np.cross(unit(facing), unit(np.sum(tangents, axis=0)))
+        right = unit(np.sum(tangents, axis=0))
+        down = -np.cross(unit(facing), right)
         for point, normal, tangent in zip(points, normals, tangents, strict=True):
-            vertices.append((np.sign(point), np.abs(point), normal, tangent, down))
+            vertices.append((np.sign(point), np.abs(point), normal, tangent, right, down))
         triangles.extend((first, first + k, first + k + 1) for k in range(1, len(points) - 1))
 
     for axis, side in product(range(3), (-1.0, 1.0)):
@@ -76,13 +77,13 @@ def _template(chamfered: bool) -> _Template:
         for corner in product((-1.0, 1.0), repeat=3):
             sign = np.array(corner)
             # Orthogonal to the corner's diagonal, so that no interpolated tangent meets its normal.
-            across = np.array([sign[0], -sign[1], 0.0])
+            flat = np.array([sign[0], -sign[1], 0.0])
             normals = [axes[k] * sign for k in range(3)]
-            tangents = [unit(across - n * (n @ across)) for n in normals]
+            tangents = [unit(flat - n * (n @ flat)) for n in normals]
             polygon([sign + n for n in normals], normals, tangents)
 
-    sign, reach, normal, tangent, down = (np.array(column) for column in zip(*vertices, strict=True))
+    sign, reach, normal, tangent, across, down = (np.array(column) for column in zip(*vertices, strict=True))
     # Without chamfers the faces' corners are the box's: every coordinate reaches out.
     outer = reach > 1.5 if chamfered else np.ones_like(reach, dtype=bool)
     with_sign = np.column_stack([tangent, np.ones(len(tangent))])
-    return _Template(sign, outer, normal, with_sign, tangent, down, np.array(triangles).ravel())
+    return _Template(sign, outer, normal, with_sign, across, down, np.array(triangles).ravel())

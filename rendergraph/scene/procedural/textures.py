@@ -40,14 +40,13 @@ def noise(rng: np.random.Generator, size: int, *, exponent: float, scale: float 
     amplitude[0, 0] = 0.0
     phase = rng.random(amplitude.shape, dtype=np.float32) * np.float32(2.0 * np.pi)
     field = np.fft.irfft2(amplitude * np.exp(1j * phase), s=(size, size))
-    result: F32 = (field * (0.2 / field.std()) + 0.5).astype(np.float32)
-    return result
+    return np.asarray(field * (0.2 / field.std()) + 0.5, dtype=np.float32)
 
 
 def smoothstep(low: float, high: float, values: F32) -> F32:
     """Hermite step from 0 at ``low`` to 1 at ``high``."""
     t = np.clip((values - np.float32(low)) / np.float32(high - low), 0.0, 1.0).astype(np.float32)
-    return t * t * (3.0 - 2.0 * t)
+    return np.asarray(t * t * (3.0 - 2.0 * t), dtype=np.float32)
 
 
 def blend(low: Rgb | F32, high: Rgb | F32, weight: F32) -> F32:
