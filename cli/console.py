@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -16,21 +18,37 @@ if TYPE_CHECKING:
     from rendergraph.run.render import Progress
 
 
+def write_text(text: str) -> None:
+    """Text and a newline on stdout. A reader that left (`rg plan g.yaml | head`) is no error: the rest is dropped."""
+    try:
+        typer.echo(text)
+    except BrokenPipeError:
+        discard_stdout()
+
+
+def discard_stdout() -> None:
+    """Send what is still buffered, and all that follows, nowhere: Python would fail on it again when it exits."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, sys.stdout.fileno())
+    os.close(null)
+
+
 def write_json(data: Any) -> None:
     """Data on stdout as indented JSON."""
-    typer.echo(json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False))
+    write_text(json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False))
 
 
 def write_table(*tables: RenderableType) -> None:
     """Tables on stdout; plain text, and as wide as needed, when it is not a terminal."""
-    import sys
-
     from rich.console import Console
 
-    console = Console() if sys.stdout.isatty() else Console(width=200, no_color=True, highlight=False)
-    for table in tables:
-        console.print(table)
-        console.print()
+    terminal = sys.stdout is not None and sys.stdout.isatty()
+    console = Console() if terminal else Console(width=200, no_color=True, highlight=False)
+    with console.capture() as captured:
+        for table in tables:
+            console.print(table)
+            console.print()
+    write_text(captured.get().removesuffix("\n"))
 
 
 def report(diagnostics: Iterable[Diagnostic]) -> None:

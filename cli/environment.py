@@ -16,7 +16,7 @@ def doctor(format: FormatOption = Format.TEXT) -> None:
     """Check Python, EGL, each device, extensions, the clock and the extras; exit 3 when a graph cannot run."""
     from dataclasses import asdict
 
-    from rendergraph.cli.console import write_json
+    from rendergraph.cli.console import write_json, write_text
     from rendergraph.device.doctor import diagnose_environment
 
     checks = diagnose_environment()
@@ -24,7 +24,7 @@ def doctor(format: FormatOption = Format.TEXT) -> None:
         write_json([asdict(check) for check in checks])
     else:
         for check in checks:
-            typer.echo(f"{'ok  ' if check.ok else 'FAIL'} {check.name}: {check.detail}")
+            write_text(f"{'ok  ' if check.ok else 'FAIL'} {check.name}: {check.detail}")
             if check.fix and not check.ok:
-                typer.echo(f"     help: {check.fix}")
+                write_text(f"     help: {check.fix}")
     raise typer.Exit(0 if all(check.ok for check in checks) else 3)

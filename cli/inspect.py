@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from enum import Enum
+from enum import StrEnum
 from typing import Annotated
 
 import typer
@@ -25,7 +25,7 @@ from rendergraph.cli.options import (
 )
 
 
-class Drawing(str, Enum):
+class Drawing(StrEnum):
     """How a graph is drawn."""
 
     MERMAID = "mermaid"
@@ -47,7 +47,7 @@ def validate(
     format: FormatOption = Format.TEXT,
 ) -> None:
     """Check graphs without a GPU; exit 1 when one has errors."""
-    from rendergraph.cli.console import report, write_json
+    from rendergraph.cli.console import report, write_json, write_text
     from rendergraph.document.messages import Diagnostic
     from rendergraph.document.render_text import diagnostic_json
     from rendergraph.plan.validate import validate_graph
@@ -61,7 +61,7 @@ def validate(
         if format is Format.TEXT:
             report(diagnostics)
             if not any(d.severity == "error" for d in diagnostics):
-                typer.echo(f"{name}: valid")
+                write_text(f"{name}: valid")
     if format is Format.JSON:
         write_json([diagnostic_json(d) for d in findings])
     raise typer.Exit(code)
@@ -107,13 +107,14 @@ def graph(
     subpasses: Annotated[bool, typer.Option("--subpasses", help="Draw sub-passes instead of passes.")] = False,
 ) -> None:
     """Draw a graph: passes and resources, as Mermaid or DOT text or as an SVG picture."""
+    from rendergraph.cli.console import write_text
     from rendergraph.document.load import load_document
     from rendergraph.plan.plan import PlanOptions
     from rendergraph.plan.validate import plan_without_scene
     from rendergraph.report.drawing import draw_graph
 
     planned, _ = plan_without_scene(load_document(graph, overrides or ()), PlanOptions(cull=False))
-    typer.echo(draw_graph(planned, drawing.value, subpasses=subpasses))
+    write_text(draw_graph(planned, drawing.value, subpasses=subpasses))
 
 
 def explain(
@@ -129,11 +130,11 @@ def explain(
     """Explain a diagnostic code, or why a graph's passes are culled, ordered, shared and fenced as they are."""
     import re
 
-    from rendergraph.cli.console import write_json
+    from rendergraph.cli.console import write_json, write_text
     from rendergraph.plan.explain import explain_code, explain_subject
 
-    if re.fullmatch(r"[Rr][Gg]\d{3}", subject):
-        typer.echo(explain_code(subject.upper()))
+    if re.fullmatch(r"[Rr][Gg]\d+", subject):
+        write_text(explain_code(subject.upper()))
         return
     from rendergraph.document.load import load_document
     from rendergraph.plan.plan import PlanOptions
@@ -144,4 +145,4 @@ def explain(
     if format is Format.JSON:
         write_json(sentences)
     else:
-        typer.echo("\n".join(sentences))
+        write_text("\n".join(sentences))

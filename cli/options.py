@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from enum import Enum
+import re
+from enum import StrEnum
 from typing import Annotated
 
 import typer
 
 
-class Format(str, Enum):
+class Format(StrEnum):
     """How data is printed."""
 
     TEXT = "text"
@@ -47,10 +48,10 @@ def parse_size(text: str | None) -> tuple[int, int] | None:
 
     if text is None:
         return None
-    width, cross, height = text.lower().partition("x")
-    if not (cross and width.isdigit() and height.isdigit()):
+    match = re.fullmatch(r"([0-9]{1,9})[xX]([0-9]{1,9})", text)
+    if match is None:
         raise typer.BadParameter(f"{text!r} is not WIDTHxHEIGHT, as 640x360", param_hint="--size")
-    size = int(width), int(height)
+    size = int(match[1]), int(match[2])
     if not all(1 <= extent <= MAX_SIZE for extent in size):
         raise typer.BadParameter(f"{text}: each side must be 1 to {MAX_SIZE} pixels", param_hint="--size")
     return size

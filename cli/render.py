@@ -60,7 +60,7 @@ def render(
     format: FormatOption = Format.TEXT,
 ) -> None:
     """Run a graph; write its images, timing.json and resources.json, and print both as tables."""
-    from rendergraph.cli.console import progress_bar, report, write_json, write_table
+    from rendergraph.cli.console import progress_bar, report, write_json, write_table, write_text
     from rendergraph.document.load import load_document
     from rendergraph.plan.plan import PlanOptions
     from rendergraph.report.tables import lifetime_table, timing_table
@@ -89,4 +89,4 @@ def render(
         return
     write_table(timing_table(written.timing), lifetime_table(written.resources))
     for file in written.files:
-        typer.echo(f"wrote {file}")
+        write_text(f"wrote {file}")

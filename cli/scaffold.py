@@ -20,11 +20,12 @@ def new_graph(
     path: Annotated[Path, typer.Argument(help="The file to make, as frame.yaml.")],
 ) -> None:
     """Write a small graph that renders."""
+    from rendergraph.cli.console import write_text
     from rendergraph.document.templates import write_graph
 
     for written in write_graph(path):
-        typer.echo(f"wrote {written}")
-    typer.echo(f"now try: rg render {path}")
+        write_text(f"wrote {written}")
+        write_text(f"now try: rg render {written}")
 
 
 def new_node(
@@ -32,8 +33,9 @@ def new_node(
     folder: Annotated[Path, typer.Option("--folder", help="Where to make the package.")] = Path(),
 ) -> None:
     """Write a Python package with one working node, its shader, test and entry point."""
+    from rendergraph.cli.console import write_text
     from rendergraph.document.templates import write_node
 
     for written in write_node(name, folder):
-        typer.echo(f"wrote {written}")
-    typer.echo(f"now try: pip install -e {folder / name} && rg nodes {name}")
+        write_text(f"wrote {written}")
+    write_text(f"now try: pip install -e {folder / name} && rg nodes {name}")

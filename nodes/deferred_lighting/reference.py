@@ -1,7 +1,7 @@
 """The light model in float64 numpy, from the textbook forms: the truth the shaders are measured against.
 
-Shares nothing with ``shaders/brdf.glsl`` and ``lights.glsl`` but the constants of ``docs/conventions.md``. Sources: Walter
-et al. 2007 (GGX), Heitz 2014 (height-correlated Smith), Schlick 1994 (Fresnel), Karis 2013 (window).
+Shares nothing with ``shaders/brdf.glsl`` and ``lights.glsl`` but the constants of ``docs/conventions.md``. Sources:
+Walter et al. 2007 (GGX), Heitz 2014 (height-correlated Smith), Schlick 1994 (Fresnel), Karis 2013 (window).
 
 Arrays broadcast over their leading axes; vectors are ``float64[..., 3]``, in world space, unit length where directions.
 """
@@ -109,9 +109,8 @@ def ambient(normal: F64, view: F64, base_color: F64, roughness: F64, metallic: F
     reflected = environment_fit(nov, roughness, reflectance_at_normal(base_color, metallic))
     mirror = 2.0 * dot(normal, view)[..., None] * normal - view
     diffuse = base_color * (1.0 - metallic[..., None])
-    total: F64 = reflected * radiance(mirror, 0.05 + 0.95 * roughness)
-    total = total + (1.0 - reflected) * diffuse * radiance(normal, np.ones_like(roughness))
-    return total
+    specular: F64 = reflected * radiance(mirror, 0.05 + 0.95 * roughness)
+    return specular + (1.0 - reflected) * diffuse * radiance(normal, np.ones_like(roughness))
 
 
 def environment_fit(nov: F64, roughness: F64, f0: F64) -> F64:
@@ -125,7 +124,7 @@ def environment_fit(nov: F64, roughness: F64, f0: F64) -> F64:
 
 
 def directional_albedo(nov: float, roughness: float, f0: float, samples: int = 4096) -> float:
-    """Share of constant light the specular lobe really reflects, by quadrature over GGX half vectors (midpoint rule)."""
+    """Share of constant light the specular lobe really reflects: midpoint rule over GGX half vectors."""
     alpha = float(alpha_of(np.array(roughness)))
     side = int(samples**0.5)
     u, v = np.meshgrid((np.arange(side) + 0.5) / side, (np.arange(side) + 0.5) / side)

@@ -35,7 +35,7 @@ def solid_queues(b: Builder) -> list[str]:
 def depth_prepass(b: Builder, target: str, queues: list[str]) -> None:
     """Fill the depth texture ``target`` with the scene's solid geometry before anything is shaded.
 
-    The pass that follows tests with ``equal``: both take positions from the one ``scene.vert``, where they are invariant.
+    The pass that follows tests with ``equal``: both take invariant positions from the one ``scene.vert``.
     """
     for queue in queues:
         first = queue == queues[0]

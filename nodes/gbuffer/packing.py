@@ -13,7 +13,8 @@ rg32f                8      octahedral  float32 rounding
 rgba32f              16     xyz         float32 rounding
 ===================  =====  ==========  ==============================
 
-Octahedral normals: Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2), 2014.
+Octahedral normals: Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2),
+2014. The figures are measured by tests/nodes/test_gbuffer.py over a million directions, poles and axes included.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from rendergraph.document.formats import FORMATS, Channel
 
 #: Formats a normal target may have, the preferred one first.
 NORMAL_FORMATS = (
-    "rg16", "rg16_snorm", "rgb10_a2", "rg8", "rg8_snorm", "rgba8", "rgba8_snorm", "rg16f", "rgba16f", "rg32f", "rgba32f",
+    "rg16", "rg16_snorm", "rgb10_a2", "rg8", "rg8_snorm", "rgba8", "rgba8_snorm", "rg16f", "rgba16f",
+    "rg32f", "rgba32f",
 )  # fmt: skip
 
 

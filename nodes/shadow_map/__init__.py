@@ -102,5 +102,5 @@ class ShadowMap(Node[ShadowMapParams]):
             problems.append((f"cascades has {buffer.bytes} bytes", f"give it `bytes: {CASCADES_BYTES}`"))
         if problems:
             raise RenderGraphError([
-                diagnose("RG225", b.position, name=b.pass_name, problem=problem, hint=hint) for problem, hint in problems
+                diagnose("RG225", b.position, name=b.pass_name, problem=what, hint=hint) for what, hint in problems
             ])  # fmt: skip

@@ -570,7 +570,9 @@ MESSAGES: Final[dict[str, Message]] = {
         "device {index} was asked for, but device {open} is already open in this process",
         "close it first, or use another process: one OpenGL context per process",
     ),
-    "RG510": Message("error", "shader file {file} cannot be read: {detail}", "write the path as seen from the graph or node"),
+    "RG510": Message(
+        "error", "shader file {file} cannot be read: {detail}", "write the path as seen from the graph or node"
+    ),
     "RG511": Message(
         "error",
         "#include {name} is not found{chain}",
@@ -583,10 +585,16 @@ MESSAGES: Final[dict[str, Message]] = {
         "keep it beside the shader, or in {roots}",
     ),
     "RG514": Message(
-        "error", "this line is not a directive the preprocessor knows: {text}", 'write #include <file> or #include "file"'
+        "error",
+        "this line is not a directive the preprocessor knows: {text}",
+        'write #include <file> or #include "file"',
     ),
-    "RG515": Message("error", "{stage} shader does not compile: {detail}", "correct that line; {needed} needs this shader"),
-    "RG516": Message("error", "the program {program} does not link: {detail}", "make the stages agree on what they pass on"),
+    "RG515": Message(
+        "error", "{stage} shader does not compile: {detail}", "correct that line; {needed} needs this shader"
+    ),
+    "RG516": Message(
+        "error", "the program {program} does not link: {detail}", "make the stages agree on what they pass on"
+    ),
     "RG517": Message(
         "error",
         "uniform {name} is {expected} in the shader, but {got} is given",
@@ -599,15 +607,22 @@ MESSAGES: Final[dict[str, Message]] = {
         "A uniform the shader declares but does not use is removed by the compiler.",
     ),
     "RG520": Message("error", "texture {label} cannot be made: {reason}", "change its size, layers, mips or samples"),
-    "RG521": Message("error", "out of memory for {label} ({bytes} bytes)", "use smaller targets, or a device with more memory"),
+    "RG521": Message(
+        "error", "out of memory for {label} ({bytes} bytes)", "use smaller targets, or a device with more memory"
+    ),
     "RG522": Message(
         "error",
         "{label}: {view} cannot be a view of {storage}: {reason}",
         "a view keeps the view class, size and samples of its storage",
     ),
-    "RG523": Message("error", "the targets of {label} do not fit together: {reason}", "give them one size and sample count"),
+    "RG523": Message(
+        "error", "the targets of {label} do not fit together: {reason}", "give them one size and sample count"
+    ),
     "RG524": Message("error", "{label}: {reason}", "hand over an array of the shape and dtype named"),
     "RG525": Message("error", "buffer {label}: {reason}", "keep offset and size within its {bytes} bytes"),
+    "RG526": Message(
+        "error", "out of memory: {detail}", "use a smaller --size, fewer frames a run, or smaller targets"
+    ),
     # -- files written and read by a run
     "RG560": Message(
         "error",
@@ -644,6 +659,9 @@ MESSAGES: Final[dict[str, Message]] = {
     "RG572": Message(
         "error", "'{name}' cannot be a node's name", "use lower-case letters, digits and underscores, as in my_blur"
     ),
+    "RG573": Message(
+        "error", "cannot write to standard output: {reason}", "redirect it elsewhere, or free space where it goes"
+    ),
     # ---- RG6xx: the scene
     # -- glTF files (`where` is the file and the JSON path in it)
     "RG601": Message("error", "{where}: cannot read {path}: {reason}", "check the path and its permissions"),
@@ -655,7 +673,9 @@ MESSAGES: Final[dict[str, Message]] = {
         "UTF-8 JSON. A file cut short by a failed download or copy fails here.",
     ),
     "RG603": Message("error", "{where}: invalid JSON: {reason}", "repair the file, or export the scene again"),
-    "RG604": Message("error", "{where}: expected {expected}, got {got}", "repair that value, or export the scene again"),
+    "RG604": Message(
+        "error", "{where}: expected {expected}, got {got}", "repair that value, or export the scene again"
+    ),
     "RG605": Message("error", "{where}: '{name}' is missing", "add it, or export the scene again"),
     "RG606": Message(
         "error", "{where}: there is no {what}/{index} (the file has {count})", "point it at an element that exists"
@@ -703,7 +723,9 @@ MESSAGES: Final[dict[str, Message]] = {
         "give every node at most one parent and no node itself as an ancestor",
     ),
     "RG616": Message("error", "{where}: {reason}", "see the glTF 2.0 specification, {section}"),
-    "RG617": Message("error", "{where}: {what}: {count}, more than the limit of {limit}", "split or simplify the scene"),
+    "RG617": Message(
+        "error", "{where}: {what}: {count}, more than the limit of {limit}", "split or simplify the scene"
+    ),
     "RG650": Message(
         "error",
         "there is no scene '{source}'",
@@ -726,6 +748,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "the graph's camera was placed for '{source}' and is not used with '{override}'",
         "to place it, change the graph instead: --set scene.source=... --set scene.camera.position=...",
     ),
-    "RG656": Message("note", "the scene '{source}' has nothing to draw", "check that the file holds meshes and a scene"),
+    "RG656": Message(
+        "note", "the scene '{source}' has nothing to draw", "check that the file holds meshes and a scene"
+    ),
     # ---- RG7xx: accuracy and budget
 }

@@ -39,6 +39,11 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 def cannot_write(path: Path, error: OSError) -> RenderGraphError:
     """The diagnostic for a failed write."""
+    return RenderGraphError([diagnose("RG560", path=str(path), reason=reason_of(error))], exit_code=2)
+
+
+def reason_of(error: OSError) -> str:
+    """Why writing failed, in a user's words."""
     reasons = {
         errno.ENOSPC: "the disk is full",
         errno.EACCES: "no permission",
@@ -47,8 +52,7 @@ def cannot_write(path: Path, error: OSError) -> RenderGraphError:
         errno.EISDIR: "a folder of that name is in the way",
         errno.EEXIST: "a file is in the way of the folder",
     }
-    reason = reasons.get(error.errno or 0, (error.strerror or str(error)).lower())
-    return RenderGraphError([diagnose("RG560", path=str(path), reason=reason)], exit_code=2)
+    return reasons.get(error.errno or 0, (error.strerror or str(error)).lower())
 
 
 def _umask() -> int:

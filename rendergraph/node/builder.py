@@ -1,4 +1,4 @@
-"""The sub-pass builder a node's ``build`` is handed: declares internal targets and adds draws, dispatches and copies."""
+"""The sub-pass builder a node's ``build`` is handed: declares internal targets; adds draws, dispatches, copies."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ Color4 = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """How a shader uses a resource; made by the functions below, given to ``Builder.raster`` and ``compute`` by name."""
+    """How a shader uses a resource; made by the functions below, for ``bind=`` of the builder's methods."""
 
     resource: str
     usage: Usage
@@ -221,7 +221,7 @@ class Builder:
         samples: int = 1,
         target: Target | None = None,
     ) -> str:
-        """Declare a transient texture; sized by ``size``, or ``scale`` times ``like`` (default: the frame), rounded up."""
+        """Declare a transient texture, of ``size`` or ``scale`` times ``like`` (default: the frame), rounded up."""
         if size is None:
             base = self.size(like) if like else (self.frame.width, self.frame.height)
             size = (max(1, -int(-base[0] * scale // 1)), max(1, -int(-base[1] * scale // 1)))
@@ -244,8 +244,8 @@ class Builder:
     def program(self, *files: str, defines: Mapping[str, Any] | None = None, user: bool = False) -> Program:
         """A program of the shader files named, the stage told by the suffix (.vert .frag .geom .tesc .tese .comp).
 
-        Files lie in the node's folder, in the shared shader folder when the name starts with ``<`` (``<fullscreen.vert>``),
-        or in the graph's folder for ``user`` files. Defines: booleans become 0/1, numbers and words are written out.
+        Files lie in the node's folder, in the shared shader folder when the name starts with ``<``
+        (``<fullscreen.vert>``), or in the graph's folder for ``user`` files. Defines: booleans become 0/1, numbers and words are written out.
         """
         stages = tuple(sorted((_stage(file), self._shader(file, user)) for file in files))
         variant = {"DEPTH_REVERSED": int(self.frame.depth == "reversed")}
@@ -312,7 +312,8 @@ class Builder:
         if isinstance(work, DispatchIndirect):
             accesses.append(Access(work.buffer, Usage.INDIRECT))
         self._add(SubPass(
-            self._step(step), self.pass_name, tuple(accesses), work, program, State(), dict(uniforms or {}), {}, self.position
+            self._step(step), self.pass_name, tuple(accesses), work, program, State(), dict(uniforms or {}), {},
+            self.position,
         ))  # fmt: skip
 
     def copy(self, step: str, source: str, destination: str, *, blit: bool = False, linear: bool = False) -> None:
@@ -329,7 +330,9 @@ class Builder:
     def clear(self, step: str, resource: str, value: Color4 | int = (0.0, 0.0, 0.0, 0.0)) -> None:
         """Set a whole texture or buffer to one value."""
         accesses = (Access(resource, Usage.CLEAR, load=False),)
-        self._add(SubPass(self._step(step), self.pass_name, accesses, ClearResource(resource, value), position=self.position))
+        self._add(
+            SubPass(self._step(step), self.pass_name, accesses, ClearResource(resource, value), position=self.position)
+        )
 
     def mips(self, step: str, resource: str) -> None:
         """Fill the lower mip levels of a texture from its first."""

@@ -98,11 +98,9 @@ def _rows(columns: dict[str, int], links: list[tuple[str, str]]) -> list[list[st
     for sweep in range(_SWEEPS):
         forward = sweep % 2 == 0
         neighbours = before if forward else after
-        for column in rows if forward else reversed(rows):
+        for row in rows if forward else rows[::-1]:
             place = {name: index for line in rows for index, name in enumerate(line)}
-            column.sort(
-                key=lambda name: (_mean([place[n] for n in neighbours.get(name, ())], place[name]), place[name])
-            )
+            row.sort(key=lambda name: (_mean([place[n] for n in neighbours.get(name, ())], place[name]), place[name]))
     return rows
 
 
@@ -138,7 +136,7 @@ def _tops(
 def _separated(
     column: list[str], wanted: list[float], nodes: dict[str, tuple[float, float]], gap: float
 ) -> list[float]:
-    """The nearest centres to those wanted that do not overlap: pushed down from the top and up from the bottom, averaged."""
+    """Centres near those wanted that do not overlap: pushed down from the top and up from the bottom, averaged."""
     need = [(nodes[a][1] + nodes[b][1]) / 2 + gap for a, b in pairwise(column)]
     down, up = list(wanted), list(wanted)
     for index, distance in enumerate(need):

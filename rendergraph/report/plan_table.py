@@ -1,4 +1,4 @@
-"""The terminal table of a plan's order: what runs, what it touches, which barrier comes before it, what was left out."""
+"""The terminal table of a plan's order: what runs, what it touches, the barrier before it, and what was left out."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ def order_table(plan: Plan) -> RenderableType:
         barrier = before.get(index)
         kinds = sorted({h.kind for h in barrier.hazards}) if barrier else []
         table.add_row(
-            str(index + 1), subpass.name, type(subpass.work).__name__, _touched(subpass, False), _touched(subpass, True),
+            str(index + 1), subpass.name, type(subpass.work).__name__,
+            _touched(subpass, False), _touched(subpass, True),
             Text(", ".join(kinds), style="yellow"),
         )  # fmt: skip
     left_out = [explain_decision(d) for d in plan.decisions if d.kind in ("cull", "specialise")]

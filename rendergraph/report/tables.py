@@ -13,7 +13,9 @@ _CHART = 40
 
 
 def mebibytes(count: float) -> str:
-    """Bytes for people: KiB below one MiB."""
+    """Bytes for people."""
+    if count < 2**10:
+        return f"{count:.0f} B"
     return f"{count / 2**20:.2f} MiB" if count >= 2**20 else f"{count / 2**10:.1f} KiB"
 
 
@@ -21,8 +23,8 @@ def timing_table(record: dict[str, Any]) -> RenderableType:
     """One row a pass: median, range, share of the sum."""
     device, frame, once = record["device"], record["frame_ms"], record["once_ms"]
     notes = [
-        f"once: plan {once['plan']:.1f}, scene {once['scene']:.0f}, compile {once['compile']:.0f}, upload {once['upload']:.0f}, "
-        f"first frame {once['first_frame']:.0f} ms",
+        f"once: plan {once['plan']:.1f}, scene {once['scene']:.0f}, compile {once['compile']:.0f}, "
+        f"upload {once['upload']:.0f}, first frame {once['first_frame']:.0f} ms",
         f"{device['renderer']}, {record['size'][0]}x{record['size'][1]}, {record['timed_frames']} timed frames",
     ]
     if frame["median"] is None:
@@ -70,8 +72,9 @@ def lifetime_table(record: dict[str, Any]) -> RenderableType:
     ratio = f" = {totals['used_over_load']:.2f} x load" if totals["used_over_load"] else ""
     text = (
         f"transient memory: used {mebibytes(totals['used'])}{ratio}\n"
-        f"unshared {mebibytes(totals['unshared'])} · exact-format pool {mebibytes(totals['exact_pool'])} · view-class pool "
-        f"{mebibytes(totals['view_pool'])} · placed {mebibytes(totals['placed'])} · load {mebibytes(totals['load'])}\n"
+        f"unshared {mebibytes(totals['unshared'])} · exact-format pool {mebibytes(totals['exact_pool'])} · "
+        f"view-class pool {mebibytes(totals['view_pool'])} · placed {mebibytes(totals['placed'])} · "
+        f"load {mebibytes(totals['load'])}\n"
         f"at the peak: {', '.join(totals['peak']) or 'nothing'} · {len(record['barriers'])} barriers · "
         f"{len(record['culled'])} sub-passes culled"
     )

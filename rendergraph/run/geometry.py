@@ -49,7 +49,7 @@ class Batch:
 
 
 class SceneGeometry:
-    """The uploaded scene. ``blocks`` are the storage blocks a shader may name; ``textures`` the ``u_textures`` array."""
+    """The uploaded scene. ``blocks`` are the storage blocks a shader may name; ``textures`` are ``u_textures``."""
 
     def __init__(self, device: Device, scene: Scene, cameras: list[Camera], replays: frozenset[int]) -> None:
         """``replays``: the instance counts that scene draws of the plan use (1, or the number of cascades)."""

@@ -40,7 +40,7 @@ def write_image(path: Path, pixels: Pixels) -> None:
 
 
 def display_pixels(pixels: Pixels) -> npt.NDArray[np.uint8]:
-    """Any pixels as uint8 for display: depth and integers stretched to their range, floats encoded sRGB, NaN magenta."""
+    """Any pixels as uint8 for display: integers stretched to their range, floats encoded sRGB, NaN magenta."""
     if pixels.dtype == np.uint8:
         return pixels
     if np.issubdtype(pixels.dtype, np.integer):

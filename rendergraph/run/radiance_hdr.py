@@ -16,7 +16,7 @@ MAX_PIXELS = 1 << 28
 
 
 def read_hdr(path: Path) -> npt.NDArray[np.float32]:
-    """Linear radiance, ``float32[height, width, 3]``, first row on top. Raises RenderGraphError RG563 when malformed."""
+    """Linear radiance, ``float32[height, width, 3]``, first row on top. RenderGraphError RG563 when malformed."""
     try:
         data = path.read_bytes()
         width, height, body = _header(data)

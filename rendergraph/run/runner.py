@@ -118,7 +118,7 @@ class Runner:
     def time_frames(
         self, first: int, count: int, clock: Clock, progress: Callable[[str, int, int], None]
     ) -> tuple[tuple[int, ...], tuple[StepTimes, ...]]:
-        """Run ``count`` whole frames and ``count`` frames pass by pass under the clock, in turn, from frame ``first`` on.
+        """Run ``count`` whole frames and ``count`` pass by pass under the clock, in turn, from frame ``first`` on.
 
         Nanoseconds. Timing a pass on its own ends its overlap with its neighbours, so both figures are kept.
         """

@@ -1,4 +1,4 @@
-"""Records GL calls once and replays them every frame. State that is already set is not set again: the order is static."""
+"""Records GL calls once and replays them every frame. State already set is not set again: the order is static."""
 
 from __future__ import annotations
 

@@ -82,7 +82,8 @@ def test_check_finite_names_pass_texel_and_value(rg: Rg, graph: Path, tmp_path: 
 
 
 def test_a_sampler_nothing_binds_is_an_error(rg: Rg, graph: Path, tmp_path: Path) -> None:
-    text = "#version 450\nuniform sampler2D u_gone;\nout vec4 o_color;\nvoid main() { o_color = texture(u_gone, vec2(0)); }\n"
+    text = "#version 450\nuniform sampler2D u_gone;\nout vec4 o_color;\n"
+    text += "void main() { o_color = texelFetch(u_gone, ivec2(0), 0); }"
     (tmp_path / "paint.frag").write_text(text)
     outcome = rg("render", str(graph), "-o", str(tmp_path / "o"))
     assert outcome.code == 1
