@@ -25,9 +25,7 @@ class ForwardShadingParams(Params):
         "all",
         "opaque (with alpha-tested), transparent (over an existing image and depth), or all: one after the other.",
     )
-    prepass: Literal["off", "full"] = knob(
-        "off", "full: draw depth alone first, so that every pixel is shaded once; pays above an overdraw of about 2."
-    )
+    prepass: Literal["off", "full"] = knob("off", "full: draw depth alone first, so that every pixel is shaded once.")
     shadow_taps: int = knob(
         3,
         "Width of the shadow filter: a box of this many bilinear taps a side.",

@@ -351,9 +351,9 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "'{first}' and '{second}' both write '{resource}', and nothing says which comes first",
         "add `after: [{first}]` to '{second}' (or the other way round); '{first}' is at {place}",
-        "Passes may be listed in any order, so the file's order decides nothing. The pass that replaces the whole content "
-        "comes first by itself; of two that add to it, or two that replace it, one needs `after:` or must read something "
-        "that depends on the other.",
+        "Passes may be listed in any order, so the file's order decides nothing. The pass that replaces all of the "
+        "content comes first by itself; of two that add to it, or two that replace it, one needs `after:` or must read "
+        "something that depends on the other.",
     ),
     "RG231": Message(
         "error",
@@ -372,9 +372,8 @@ MESSAGES: Final[dict[str, Message]] = {
     "RG233": Message(
         "error",
         "passes wait for each other in a circle: {path}",
-        "break it: read last frame's content through a resource with `previous:`, or drop an `after:`; {steps}",
-        "Each arrow reads 'must run before'. A pass is one unit here, even when its sub-passes could be interleaved. "
-        "Places: see the positions of the passes named.",
+        "break it: read last frame's content through a resource with `previous:`, or drop an `after:`; {steps}; {places}",
+        "Each arrow reads 'must run before'. A pass is one unit here, even when its sub-passes could be interleaved.",
     ),
     "RG234": Message(
         "error",

@@ -245,7 +245,8 @@ class Builder:
         """A program of the shader files named, the stage told by the suffix (.vert .frag .geom .tesc .tese .comp).
 
         Files lie in the node's folder, in the shared shader folder when the name starts with ``<``
-        (``<fullscreen.vert>``), or in the graph's folder for ``user`` files. Defines: booleans become 0/1, numbers and words are written out.
+        (``<fullscreen.vert>``), or in the graph's folder for ``user`` files. Defines: booleans become 0/1, numbers and
+        words are written out.
         """
         stages = tuple(sorted((_stage(file), self._shader(file, user)) for file in files))
         variant = {"DEPTH_REVERSED": int(self.frame.depth == "reversed")}

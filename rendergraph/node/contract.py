@@ -21,9 +21,10 @@ ParamsT = TypeVar("ParamsT", bound=Params)
 class Port:
     """A typed connection of a node.
 
-    ``formats`` lists what the port takes, the preferred one first (an undeclared output resource gets it); empty for
-    a buffer. With both ``formats`` and ``buffer`` the port takes either. ``like`` names another port whose size this
-    one must have. ``modify`` marks an output that adds to what the resource already holds. ``layers``: exact number of layers, ``None`` for any.
+    ``formats`` lists what the port takes, the preferred one first (an undeclared output resource gets it); empty for a
+    buffer. With both ``formats`` and ``buffer`` the port takes either. ``like`` names another port whose size this one
+    must have. ``modify`` marks an output that adds to what the resource already holds. ``layers``: exact number of
+    layers, ``None`` for any.
     """
 
     help: str

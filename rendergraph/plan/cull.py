@@ -64,6 +64,7 @@ def _mark(index: Index, flow: Flow) -> list[bool]:
     def last_writers(resource: str) -> Iterable[int]:
         return (s for s in (flow.final[cell] for cell in index.cells_of[resource]) if s >= 0)
 
+    stack = [s for name in graph.outputs for s in last_writers(name)]
     history: dict[int, list[int]] = {}  # sub-pass -> writers of what it reads a frame later
     for resource in index.resources:
         if resource.kind is Kind.HISTORY and resource.previous_of is not None:
@@ -71,10 +72,11 @@ def _mark(index: Index, flow: Flow) -> list[bool]:
             while source.previous_of is not None:  # the history of a history keeps the same content alive
                 source = graph.resources[source.previous_of]
             writers = list(last_writers(source.name))
+            if resource.name in graph.outputs:
+                stack += writers
             for cell in index.cells_of[resource.name]:
                 for subpass, _ in index.touches[cell]:
                     history.setdefault(subpass, []).extend(writers)
-    stack = [s for name in graph.outputs for s in last_writers(name)]
     stack += [s for found, steps in zip(index.passes, index.steps, strict=True) if found.keep for s in steps]
     while stack:
         subpass = stack.pop()

@@ -19,7 +19,7 @@ def storage_bytes(resource: Resource) -> int:
 
 def find_lifetimes(graph: Graph, order: Sequence[SubPass]) -> dict[str, Lifetime]:
     """First and last use of every resource that the order touches, by name. Outputs are read after the frame, so
-    they live to its end.
+    they live to its end; one that no sub-pass touches (an image file, a history) lives all along.
     """
     first: dict[str, int] = {}
     last: dict[str, int] = {}
@@ -30,8 +30,8 @@ def find_lifetimes(graph: Graph, order: Sequence[SubPass]) -> dict[str, Lifetime
                 first[name] = position
             last[name] = position
     for name in graph.outputs:
-        if name in last:
-            last[name] = len(order) - 1
+        first.setdefault(name, 0)
+        last[name] = max(0, len(order) - 1)
     return {name: Lifetime(first[name], last[name]) for name in sorted(first)}
 
 

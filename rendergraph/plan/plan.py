@@ -75,6 +75,7 @@ class MemoryTotals:
 
     ``unshared``: each has its own; ``exact_pool``: shared between equal descriptions; ``view_pool``: shared within view
     classes; ``placed``: best packing a heap API would reach; ``load``: the lower bound, most bytes live at once.
+    Buffers count rounded up to 256 bytes, and are packed by offset in both pools.
     ``used`` is ``view_pool``, or ``unshared`` when aliasing is off.
     """
 

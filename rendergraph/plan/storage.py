@@ -69,7 +69,7 @@ def cell_histories(
         return []
     homes: dict[str, tuple[Home, int]] = {}
     frames: dict[Home, int] = {}
-    for name in {access.resource for subpass in order for access in subpass.accesses}:
+    for name in {*graph.outputs, *(access.resource for subpass in order for access in subpass.accesses)}:
         home, age = homes[name] = _home(graph, name, slot_of, buffer_of)
         frames[home] = max(frames.get(home, 1), age + 1)
     chosen: dict[Home, set[tuple[int | None, int | None]]] = {}

@@ -156,6 +156,9 @@ def _uses(plan: Plan) -> tuple[dict[int, list[_Use]], dict[str, int]]:
     uses: dict[int, list[_Use]] = {}
     if not hot:
         return uses, {}
+    for name in plan.graph.outputs:
+        home, age = _home(plan, name)
+        copies[home] = max(copies.get(home, 1), age + 1)
     for at, step in enumerate(plan.order):
         for access in step.accesses:
             home, age = homes[access.resource]

@@ -18,8 +18,7 @@ def check_memory(plan: Plan) -> list[str]:
         for access in step.accesses:
             spans[access.resource] = spans.get(access.resource, (at, at))[0], at
     for name in plan.graph.outputs:
-        if name in spans:
-            spans[name] = spans[name][0], len(plan.order) - 1
+        spans[name] = spans.get(name, (0, 0))[0], max(0, len(plan.order) - 1)
     faults = [
         f"memory: the lifetime of {name} is wrong"
         for name in {*spans, *plan.lifetimes}

@@ -53,11 +53,13 @@ def _wanted(graph: Graph, spots: dict[Spot, Users]) -> set[str]:
     """Resources whose content outlives the frame: outputs, and what a history that is read was made from."""
     wanted = set(graph.outputs)
     for (name, _, _), users in spots.items():
+        if graph.resources[name].previous_of and any(at >= 0 for user in users.values() for at, _, _ in user.steps):
+            wanted.add(name)
+    for name in tuple(wanted):
         source = graph.resources[name].previous_of
-        if source is not None and any(at >= 0 for user in users.values() for at, _, _ in user.steps):
-            while source is not None:
-                wanted.add(source)
-                source = graph.resources[source].previous_of
+        while source is not None:
+            wanted.add(source)
+            source = graph.resources[source].previous_of
     return wanted
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from plan_graphs import adds, make_graph, make_pass, reads, writes
 
 from rendergraph.plan.compile import compile_plan
-from rendergraph.plan.graph import Graph
+from rendergraph.plan.graph import Graph, Kind
 from rendergraph.plan.plan import PlanOptions
 
 
@@ -86,6 +86,15 @@ def test_history_in_use_keeps_its_source_alive() -> None:
         [make_pass("blend", [writes("out")]), make_pass("store", [writes("x")])], ["out"], history={"last": "x"}
     )
     assert culled(unread)["store"] == "nothing_reads_it"
+
+
+def test_an_output_that_is_history_or_a_file_needs_no_pass() -> None:
+    graph = make_graph(
+        [make_pass("store", [writes("x")])], ["last", "photo"], history={"last": "x"}, kinds={"photo": Kind.IMPORTED}
+    )
+    plan, _ = compile_plan(graph)
+    assert [step.name for step in plan.order] == ["store.0"]
+    assert (plan.lifetimes["last"].last, plan.lifetimes["photo"].last) == (0, 0)
 
 
 def test_a_resource_that_nothing_touches_is_unused() -> None:

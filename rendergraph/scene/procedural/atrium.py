@@ -35,6 +35,6 @@ def atrium(detail: float, seed: int) -> Scene:
     ]
     direction = np.array([0.40, -1.0, -0.42])
     x, y, z = (direction / np.linalg.norm(direction)).tolist()
-    scene.sun = Sun((x, y, z), (9.0, 8.3, 7.2))
-    scene.ambient = Ambient((0.42, 0.52, 0.68), (0.24, 0.20, 0.16))
+    scene.sun = Sun((x, y, z), (10.0, 9.0, 7.5))
+    scene.ambient = Ambient((0.16, 0.20, 0.27), (0.15, 0.125, 0.10))
     return scene
