@@ -372,7 +372,7 @@ MESSAGES: Final[dict[str, Message]] = {
     "RG233": Message(
         "error",
         "passes wait for each other in a circle: {path}",
-        "break it: read last frame's content through a resource with `previous:`, or drop an `after:`; {steps}; {places}",
+        "break it: read last frame's content through `previous:`, or drop an `after:`; {steps}; {places}",
         "Each arrow reads 'must run before'. A pass is one unit here, even when its sub-passes could be interleaved.",
     ),
     "RG234": Message(
