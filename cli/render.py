@@ -62,12 +62,14 @@ def render(
     """Run a graph; write its images, timing.json and resources.json, and print both as tables."""
     from rendergraph.cli.console import progress_bar, report, write_json, write_table, write_text
     from rendergraph.document.load import load_document
+    from rendergraph.document.whole_files import require_folder
     from rendergraph.plan.plan import PlanOptions
     from rendergraph.report.tables import lifetime_table, timing_table
     from rendergraph.report.write import write_result
     from rendergraph.run.render import RenderOptions, render_document
 
     document = load_document(graph, overrides or ())
+    require_folder(output)
     options = RenderOptions(
         size=parse_size(size),
         frames=frames,

@@ -40,20 +40,23 @@ class FileTable:
 
 
 def preprocess(
-    path: Path, defines: Sequence[tuple[str, str]] = (), include_dirs: Sequence[Path] = ()
+    path: Path,
+    defines: Sequence[tuple[str, str]] = (),
+    include_dirs: Sequence[Path] = (),
+    asked_by: Position | None = None,
 ) -> tuple[str, FileTable]:
     """The shader's text with includes expanded, and the table that maps its line numbers back.
 
     ``<name>`` is looked up in the shared folder, then in ``include_dirs``; ``"name"`` beside the including file. Every
     included file must lie in one of those folders or under the shader's own. A file's text counts once, however
-    often it is included. Defines follow ``#version``, which defaults to 450.
+    often it is included. Defines follow ``#version``, which defaults to 450. ``asked_by`` is where the graph names it.
 
     :raises RenderGraphError: RG510 unreadable, RG511 not found, RG512 a cycle, RG513 outside the allowed folders,
         RG514 a malformed directive.
     """
     roots = tuple(root.resolve() for root in (path.parent, SHARED, *include_dirs))
     expansion = _Expansion(roots, (SHARED, *include_dirs))
-    body = expansion.expand(path, (), None)
+    body = expansion.expand(path, (), asked_by)
     head = [f"#version {expansion.version}", *(f"#define {name} {value}".rstrip() for name, value in defines)]
     return "\n".join([*head, *body, ""]), expansion.files
 
@@ -147,11 +150,18 @@ def _say(chain: tuple[tuple[Path, Position], ...]) -> str:
 def _read(path: Path, at: Position | None) -> list[str]:
     try:
         lines = path.read_text(encoding="utf-8-sig").split("\n")
-    except (OSError, UnicodeDecodeError) as error:
-        raise RenderGraphError([diagnose("RG510", at, file=path, detail=error)]) from None
+    except UnicodeDecodeError as error:
+        detail = f"byte 0x{error.object[error.start]:02X} at offset {error.start} is not UTF-8"
+        raise _unreadable(path, at, detail, "save the shader as UTF-8 text") from None
+    except OSError as error:
+        raise _unreadable(path, at, error.strerror, "check the file and its permissions") from None
     if len(lines) >= LINES_A_FILE:
-        raise RenderGraphError([diagnose("RG510", at, file=path, detail=f"more than {LINES_A_FILE - 1} lines")])
+        raise _unreadable(path, at, f"more than {LINES_A_FILE - 1} lines", "split it into files that it includes")
     return lines
+
+
+def _unreadable(path: Path, at: Position | None, detail: str | None, hint: str) -> RenderGraphError:
+    return RenderGraphError([diagnose("RG510", at, file=path, detail=detail, hint=hint)])
 
 
 def _without_comments(line: str, commented: bool) -> tuple[str, bool]:

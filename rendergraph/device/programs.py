@@ -131,7 +131,7 @@ def compile_program(
     :raises RenderGraphError: RG510..RG514 from the preprocessor, RG515 for each compile error at its place in the
         author's shader, RG516 when the stages do not link, RG517 and RG518 from the uniforms.
     """
-    expanded = {stage: preprocess(path, program.defines, include_dirs) for stage, path in program.stages}
+    expanded = {stage: preprocess(path, program.defines, include_dirs, position) for stage, path in program.stages}
     values = tuple(sorted((uniforms or {}).items()))
     text = repr([(stage, source) for stage, (source, _) in sorted(expanded.items())] + [values])
     key = hashlib.sha256(text.encode()).hexdigest()

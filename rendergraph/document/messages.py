@@ -570,7 +570,7 @@ MESSAGES: Final[dict[str, Message]] = {
         "close it first, or use another process: one OpenGL context per process",
     ),
     "RG510": Message(
-        "error", "shader file {file} cannot be read: {detail}", "write the path as seen from the graph or node"
+        "error", "shader file {file} cannot be read: {detail}", "{hint}"
     ),
     "RG511": Message(
         "error",
@@ -652,6 +652,11 @@ MESSAGES: Final[dict[str, Message]] = {
     ),
     "RG567": Message(
         "error", "pass '{subpass}': the scene is needed but the graph has none", "add a scene: section, or pass --scene"
+    ),
+    "RG568": Message(
+        "error",
+        "the capture of '{name}' and the output '{output}' would both write {file}",
+        "give the output another file, as --set outputs.{output}.file=final.png",
     ),
     "RG570": Message("error", "there is no node '{name}'", "{hint}"),
     "RG571": Message("error", "{path} exists already", "choose another name, or remove it first"),

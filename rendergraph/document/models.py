@@ -7,17 +7,16 @@ table by its code.
 
 from __future__ import annotations
 
-from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, ConfigDict, Field, JsonValue, model_validator
+from pydantic import ConfigDict, Field, JsonValue, model_validator
 from pydantic_core import PydanticCustomError
 
 from rendergraph.document.field_types import Extent, FormatName, Model, Name, NotBoolean, ResourceName, mistake
+from rendergraph.document.output_files import OutputFile, find_clash
 from rendergraph.document.scene_models import SceneModel
 
 MAX_FRAMES = 10000
-IMAGE_SUFFIXES = (".png", ".exr", ".npy")
 
 
 class FrameModel(Model):
@@ -116,19 +115,10 @@ class BarrierModel(Model):
     kind: BarrierKind = Field(..., description="How it is used next: a bit of glMemoryBarrier, or texture_barrier.")
 
 
-def _output_file(name: str) -> str:
-    path = PurePosixPath(name)
-    if path.is_absolute() or ".." in path.parts or "\\" in name or "\0" in name:
-        raise mistake(f"'{name}' does not stay inside the output folder", "give a relative path without `..`")
-    if path.suffix.lower() not in IMAGE_SUFFIXES:
-        raise mistake(f"'{name}' has no known image suffix", f"end the name in {', '.join(IMAGE_SUFFIXES)}")
-    return name
-
-
 class OutputModel(Model):
     """A file written from a resource after the last frame (or every frame, when the name holds `{frame}`)."""
 
-    file: Annotated[str, AfterValidator(_output_file)] = Field(
+    file: OutputFile = Field(
         ..., min_length=1, max_length=200, description="File name inside the output folder; .png, .exr or .npy."
     )
     format: FormatName | None = Field(None, description="Format, when the resource is not declared.")
@@ -164,10 +154,8 @@ class DocumentModel(Model):
 
     @model_validator(mode="after")
     def _distinct_files(self) -> DocumentModel:
-        writers: dict[str, str] = {}
-        for name, output in self.outputs.items():
-            first = writers.setdefault(output.file, name)
-            if first != name:
-                problem = f"outputs '{first}' and '{name}' both write {output.file}"
-                raise mistake(problem, "give each output a file of its own", f"outputs/{name}/file")
+        clash = find_clash({name: output.file for name, output in self.outputs.items()})
+        if clash is not None:
+            _, name, problem = clash
+            raise mistake(problem, "give each output a file of its own", f"outputs/{name}/file")
         return self

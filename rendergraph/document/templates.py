@@ -16,8 +16,10 @@ TEMPLATES = Path(__file__).resolve().parent.parent / "templates"
 def write_graph(path: Path) -> list[Path]:
     """Write a small graph that renders; the suffix becomes .yaml. Raises RenderGraphError RG571 when it exists."""
     path = path if path.suffix in (".yaml", ".yml") else path.with_name(path.name + ".yaml")
-    title = path.stem.replace("_", " ").replace("-", " ").capitalize() or "Graph"
-    _write({path: TEMPLATES / "graph.yaml"}, file=path.name, stem=path.stem, title=title)
+    # A file's name may hold anything; what stands in the YAML may not.
+    stem = re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem)[:100]
+    title = re.sub(r"[\W_]+", " ", path.stem).strip()[:100].capitalize() or "Graph"
+    _write({path: TEMPLATES / "graph.yaml"}, file=stem + path.suffix, stem=stem, title=title)
     return [path]
 
 

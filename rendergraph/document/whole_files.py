@@ -37,6 +37,23 @@ def whole_file(path: Path) -> Iterator[Path]:
         raise
 
 
+def require_folder(folder: Path) -> None:
+    """Raise RenderGraphError RG560 where files could not be written into ``folder``, which need not exist yet.
+
+    Nothing is made: this is asked before long work, so that it is not lost.
+    """
+    try:
+        nearest = folder.absolute()
+        while not nearest.exists():
+            nearest = nearest.parent
+        if not nearest.is_dir():
+            raise FileExistsError(errno.EEXIST, "")
+        if not os.access(nearest, os.W_OK | os.X_OK):
+            raise PermissionError(errno.EACCES, "")
+    except OSError as error:
+        raise cannot_write(folder, error) from None
+
+
 def cannot_write(path: Path, error: OSError) -> RenderGraphError:
     """The diagnostic for a failed write."""
     return RenderGraphError([diagnose("RG560", path=str(path), reason=reason_of(error))], exit_code=2)

@@ -10,6 +10,7 @@ from rendergraph.document.messages import Diagnostic, RenderGraphError
 from rendergraph.plan.compile import compile_plan
 from rendergraph.plan.expand import expand
 from rendergraph.plan.plan import Plan, PlanOptions
+from rendergraph.scene.source import source_problem
 
 
 def plan_without_scene(document: Document, options: PlanOptions) -> tuple[Plan, tuple[Diagnostic, ...]]:
@@ -22,7 +23,22 @@ def plan_without_scene(document: Document, options: PlanOptions) -> tuple[Plan, 
 def validate_graph(path: str | Path, overrides: Sequence[str] = ()) -> tuple[tuple[Diagnostic, ...], int]:
     """All findings of one file, and the exit code they deserve: 0 fine (warnings allowed), 1 errors, 2 unreadable."""
     try:
-        _, warnings = plan_without_scene(load_document(path, overrides), PlanOptions())
+        document = load_document(path, overrides)
     except RenderGraphError as error:
         return error.diagnostics, error.exit_code
-    return warnings, 0
+    missing = _missing_scene(document)
+    try:
+        _, warnings = plan_without_scene(document, PlanOptions())
+    except RenderGraphError as error:
+        return (*missing, *error.diagnostics), error.exit_code
+    return (*missing, *warnings), 1 if missing else 0
+
+
+def _missing_scene(document: Document) -> tuple[Diagnostic, ...]:
+    """The scene is not loaded here, but it has to be there."""
+    scene = document.model.scene
+    if scene is None:
+        return ()
+    place = document.position("scene", "source")
+    problem = source_problem(scene.source, document.path.parent, place, base="the graph file")
+    return () if problem is None else (problem,)

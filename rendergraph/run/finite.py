@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rendergraph.device import enums
 from rendergraph.device.context import Device
 from rendergraph.device.textures import read_texture
 from rendergraph.document.formats import FORMATS, Channel
@@ -15,6 +16,7 @@ from rendergraph.run.allocation import Allocation
 
 def check_finite_writes(device: Device, plan: Plan, subpass: SubPass, storage: Allocation, frame: int) -> None:
     """Raise RenderGraphError RG565 for the first texel, in reading order, that is not finite."""
+    device.gl.glMemoryBarrier(enums.TEXTURE_UPDATE_BARRIER_BIT)
     for access in subpass.accesses:
         desc = plan.graph.resources[access.resource].desc
         if not access.usage.writes or not isinstance(desc, TextureDesc):

@@ -12,11 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from rendergraph.document.messages import RenderGraphError, diagnose
+from rendergraph.document.output_files import IMAGE_SUFFIXES
 from rendergraph.document.whole_files import whole_file
+from rendergraph.plan.graph import Position
 
 Pixels = npt.NDArray[Any]
-
-SUFFIXES = (".png", ".exr", ".npy")
 
 
 def write_image(path: Path, pixels: Pixels) -> None:
@@ -27,8 +27,9 @@ def write_image(path: Path, pixels: Pixels) -> None:
     Raises RenderGraphError RG561 (suffix), RG562 (no EXR library), RG560 (cannot write).
     """
     suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise RenderGraphError([diagnose("RG561", path=str(path), suffix=suffix, known=", ".join(SUFFIXES))], 2)
+    if suffix not in IMAGE_SUFFIXES:
+        raise RenderGraphError([diagnose("RG561", path=str(path), suffix=suffix, known=", ".join(IMAGE_SUFFIXES))], 2)
+    require_writer(path.name)
     top_down = np.ascontiguousarray(pixels[::-1])
     with whole_file(path) as temporary:
         if suffix == ".png":
@@ -37,6 +38,20 @@ def write_image(path: Path, pixels: Pixels) -> None:
             np.save(temporary, top_down)
         else:
             _write_exr(temporary, top_down)
+
+
+def capture_file(resource: str) -> str:
+    """The file a captured resource is saved as, inside the output folder."""
+    return f"{resource}.png"
+
+
+def require_writer(file: str, position: Position | None = None) -> None:
+    """Raise RenderGraphError RG562 where ``file`` would be an EXR and the library is not installed."""
+    if file.lower().endswith(".exr"):
+        try:
+            import OpenEXR  # noqa: F401
+        except ImportError:
+            raise RenderGraphError([diagnose("RG562", position, path=file)], exit_code=3) from None
 
 
 def display_pixels(pixels: Pixels) -> npt.NDArray[np.uint8]:
@@ -73,10 +88,8 @@ def _write_png(path: Path, pixels: Pixels) -> None:
 
 
 def _write_exr(path: Path, pixels: Pixels) -> None:
-    try:
-        import OpenEXR
-    except ImportError:
-        raise RenderGraphError([diagnose("RG562", path=path.name)], exit_code=3) from None
+    import OpenEXR
+
     kept = pixels if pixels.dtype in (np.float16, np.float32) else pixels.astype(np.float32)
     names = {1: "Y", 3: "RGB", 4: "RGBA"}
     channels = kept.shape[-1]

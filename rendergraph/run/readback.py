@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rendergraph.device import enums
 from rendergraph.device.buffers import read_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.textures import read_texture
@@ -15,6 +16,8 @@ def read_resource(device: Device, storage: Allocation, name: str, frame: int) ->
     """A texture's first mip as ``[height, width, channels]`` (the layers of an array side by side), a buffer as
     ``float32[1, words, 1]``; rows bottom-up.
     """
+    # No sub-pass of the plan reads this: shader stores are made visible to the transfer here.
+    device.gl.glMemoryBarrier(enums.TEXTURE_UPDATE_BARRIER_BIT | enums.BUFFER_UPDATE_BARRIER_BIT)
     if not storage.is_texture(name):
         data = read_buffer(device, storage.buffer(name, frame))
         return np.frombuffer(data, dtype=np.float32).reshape(1, -1, 1)

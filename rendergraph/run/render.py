@@ -11,6 +11,7 @@ from rendergraph.device.context import Device, open_device
 from rendergraph.document.load import Document
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.plan.plan import PlanOptions
+from rendergraph.run.image_files import capture_file, require_writer
 from rendergraph.run.plan_document import PlannedDocument, plan_document
 from rendergraph.run.result import DeviceFacts, FrameResult, Pixels, RunTimes, SteadyState
 from rendergraph.run.runner import Runner
@@ -53,11 +54,24 @@ def render_document(
     planned = plan_document(
         document, options.plan, scene=options.scene, size=options.size, frames=options.frames, full=options.full
     )
-    for name in options.captures:
+    _check_files(planned, document, options.captures)
+    return run_plan(planned, document, open_device(options.device), options, progress)
+
+
+def _check_files(planned: PlannedDocument, document: Document, captures: tuple[str, ...]) -> None:
+    """Refuse, before anything is rendered, what could not be written after it (RG562, RG564, RG568)."""
+    outputs = document.model.outputs
+    for name in planned.plan.graph.outputs:
+        require_writer(outputs[name].file, document.position("outputs", name, "file"))
+    files = {output.file: name for name, output in outputs.items()}
+    for name in captures:
         if name not in planned.plan.lifetimes:
             known = ", ".join(sorted(planned.plan.lifetimes))
             raise RenderGraphError([diagnose("RG564", name=name, known=known)], exit_code=2)
-    return run_plan(planned, document, open_device(options.device), options, progress)
+        file = capture_file(name)
+        if files.get(file, name) != name:
+            place = document.position("outputs", files[file], "file")
+            raise RenderGraphError([diagnose("RG568", place, name=name, output=files[file], file=file)], exit_code=2)
 
 
 def run_plan(

@@ -10,14 +10,14 @@ import numpy as np
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.document.scene_models import CameraModel, LightsModel, PointsModel, SceneModel, SpotModel
-from rendergraph.document.suggest import closest, did_you_mean
+from rendergraph.document.suggest import did_you_mean
 from rendergraph.plan.graph import Position
 from rendergraph.scene import procedural
 from rendergraph.scene.cameras import frame_scene
 from rendergraph.scene.scatter import scatter_lights
 from rendergraph.scene.scene import F64, Ambient, Camera, Light, Scene, Sun
+from rendergraph.scene.source import source_problem
 
-_SUFFIXES = (".glb", ".gltf")
 #: Lights of a scene that has none, so that its picture is not black.
 _DEFAULT_SUN = Sun((-0.36, -0.89, -0.28), (4.5, 4.3, 4.0))
 _DEFAULT_AMBIENT = Ambient((0.28, 0.33, 0.40), (0.16, 0.15, 0.14))
@@ -68,8 +68,11 @@ def load_scene(
         camera_model = CameraModel(**camera_model.model_dump(include={"fov", "orbit"}, exclude_unset=True))
         notes.append(diagnose("RG655", camera_position, source=model.source, override=source))
     scene_seed = model.seed if "seed" in model.model_fields_set else frame_seed
-    root = folder if source_override is None else Path()
-    scene = _geometry(source, root, detail=model.detail, seed=scene_seed, position=position)
+    root, base = (folder, "the graph file") if source_override is None else (Path(), "the working directory")
+    problem = source_problem(source, root, position, base=base)
+    if problem is not None:
+        raise RenderGraphError([problem], exit_code=1 if source_override is None else 2)
+    scene = _geometry(source, root, detail=model.detail, seed=scene_seed)
     if not scene.instances:
         notes.append(diagnose("RG656", position, source=source))
     notes += _apply_lights(scene, model.lights, frame_seed, position)
@@ -78,33 +81,12 @@ def load_scene(
     return LoadedScene(scene, camera, orbit_turns, tuple(notes))
 
 
-def _geometry(source: str, root: Path, *, detail: float, seed: int, position: Position | None) -> Scene:
+def _geometry(source: str, root: Path, *, detail: float, seed: int) -> Scene:
     if source in procedural.SHIPPED:
         return procedural.build(source, detail=detail, seed=seed)
-    if Path(source).suffix.lower() not in _SUFFIXES:
-        otherwise = "name a shipped scene ({choices}) or a .gltf or .glb file"
-        help = did_you_mean(source, procedural.SHIPPED, otherwise)
-        raise RenderGraphError([diagnose("RG650", position, source=source, hint=help)])
-    path = root / source
-    try:
-        reason = "it is a folder" if path.is_dir() else None if path.is_file() else "there is no such file"
-    except (OSError, ValueError) as error:  # a name too long, or one with a NUL
-        reason = str(error)
-    if reason is not None:
-        raise RenderGraphError([diagnose("RG651", position, path=str(path), reason=reason, hint=_nearest_file(path))])
     from rendergraph.scene.gltf import load_gltf
 
-    return load_gltf(path)
-
-
-def _nearest_file(path: Path) -> str:
-    """A help line: the scene file beside ``path`` with the nearest name."""
-    try:
-        beside = [entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in _SUFFIXES]
-    except (OSError, ValueError):
-        return "check the path: it is relative to the graph file"
-    near = closest(path.name, beside)
-    return f"did you mean '{near}'?" if near else "check the path: it is relative to the graph file"
+    return load_gltf(root / source)
 
 
 # ---------------------------------------------------------------- camera

@@ -99,7 +99,7 @@ def _parse(text: bytes, path: Path, positioned: bool) -> Any:
             reason += f" at byte {error.pos} of the JSON chunk"
     except ValueError as error:  # not_a_number, _finite, or an integer of thousands of digits
         reason = str(error).split(";")[0]
-    raise RenderGraphError([diagnose("RG603", position, where=path.name, reason=reason)])
+    raise RenderGraphError([diagnose("RG603", position, where=path.name, reason=reason)], exit_code=2)
 
 
 def _finite(digits: str) -> float:

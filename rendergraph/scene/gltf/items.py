@@ -9,12 +9,14 @@ from rendergraph.document.messages import RenderGraphError, diagnose
 
 FLOAT_MAX = 3.4e38  # what float32, and so the GPU, can hold
 
+#: The file cannot be read as glTF at all, as against holding something wrong: exit code 2.
+_UNREADABLE = ("RG601", "RG602", "RG603")
 _JSON_NAMES = {dict: "an object", list: "an array", bool: "a boolean", type(None): "null"}
 
 
 def gltf_error(code: str, where: str, **data: Any) -> RenderGraphError:
     """A diagnostic at ``where``: ``file: /json/path``."""
-    return RenderGraphError([diagnose(code, where=where, **data)])
+    return RenderGraphError([diagnose(code, where=where, **data)], exit_code=2 if code in _UNREADABLE else 1)
 
 
 def printable(text: str) -> str:
