@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -25,7 +26,7 @@ def new_graph(
 
     for written in write_graph(path):
         write_text(f"wrote {written}")
-        write_text(f"now try: rg render {written}")
+        write_text(f"now try: rg render {shlex.quote(str(written))}")
 
 
 def new_node(
@@ -38,4 +39,4 @@ def new_node(
 
     for written in write_node(name, folder):
         write_text(f"wrote {written}")
-    write_text(f"now try: pip install -e {folder / name} && rg nodes {name}")
+    write_text(f"now try: pip install -e {shlex.quote(str(folder / name))} && rg nodes {name}")

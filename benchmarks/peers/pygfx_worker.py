@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pygfx as gfx
+import wgpu
 from serve import serve
 from shot import Shot, look_at, strength
 
@@ -21,7 +22,7 @@ class Pygfx:
         shadow = "shadow" in given
         self.size = shot.size
         width, height = shot.size
-        self.target = gfx.Texture(dim=2, size=(width, height, 1), format="rgba8unorm-srgb", usage="COPY_SRC")
+        self.target = gfx.Texture(dim=2, size=(width, height, 1), format="rgba8unorm-srgb", usage=wgpu.TextureUsage.COPY_SRC)
         self.renderer = gfx.WgpuRenderer(
             self.target,
             pixel_scale=float(given["scale"]) if "scale" in given else None,
@@ -70,7 +71,7 @@ class Pygfx:
     def draw(self) -> None:
         """See :class:`serve.Renderer`."""
         self.renderer.render(self.scene, self.camera)
-        self.device.queue.on_submitted_work_done_sync()
+        self.device._poll_wait()  # on_submitted_work_done_sync of wgpu 0.32 raises TypeError
 
     def read(self) -> npt.NDArray[np.uint8]:
         """See :class:`serve.Renderer`."""

@@ -19,6 +19,7 @@ import numpy.typing as npt
 if not hasattr(np, "infty"):
     np.infty = np.inf
 import OpenGL
+import OpenGL.EGL  # PyOpenGL 3.1.10 cannot import this with its checks off
 
 OpenGL.ERROR_CHECKING = False  # a glGetError after every call would count against it
 

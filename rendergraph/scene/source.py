@@ -35,7 +35,9 @@ def _nearest_file(path: Path, base: str) -> str:
     """A help line: the scene file beside ``path`` with the nearest name."""
     otherwise = f"check the path: it is relative to {base}"
     try:
-        beside = [entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in _SUFFIXES]
+        beside = [
+            entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in _SUFFIXES and entry.is_file()
+        ]
     except (OSError, ValueError):
         return otherwise
     near = closest(path.name, beside)
