@@ -63,13 +63,16 @@ def reason_of(error: OSError) -> str:
     """Why writing failed, in a user's words."""
     reasons = {
         errno.ENOSPC: "the disk is full",
+        errno.EFBIG: "the file would exceed the size limit",
         errno.EACCES: "no permission",
         errno.EROFS: "the file system is read-only",
         errno.ENOTDIR: "part of the path is a file, not a folder",
         errno.EISDIR: "a folder of that name is in the way",
         errno.EEXIST: "a file is in the way of the folder",
     }
-    return reasons.get(error.errno or 0, (error.strerror or str(error)).lower())
+    if error.errno is None:  # numpy's short writes come without one
+        return f"the disk may be full ({error})"
+    return reasons.get(error.errno, (error.strerror or str(error)).lower())
 
 
 def _umask() -> int:

@@ -8,8 +8,9 @@
 
 layout(std430) CASCADES_ACCESS buffer Cascades {
     mat4 to_clip[4];  // world -> the map's clip space; z follows the frame's depth convention
-    vec4 far;         // view depth at which each cascade ends [m]
-    vec4 texel;       // width of a texel [m]
+    // Arrays, not vectors: each invocation writes its own element, and a driver may write a whole vector for one component.
+    float far[4];     // view depth at which each cascade ends [m]
+    float texel[4];   // width of a texel [m]
     uint count;
     float normal_bias; // receiver offset along the normal, in filter radii
     uint unused_0;
