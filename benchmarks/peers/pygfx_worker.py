@@ -22,7 +22,9 @@ class Pygfx:
         shadow = "shadow" in given
         self.size = shot.size
         width, height = shot.size
-        self.target = gfx.Texture(dim=2, size=(width, height, 1), format="rgba8unorm-srgb", usage=wgpu.TextureUsage.COPY_SRC)
+        self.target = gfx.Texture(
+            dim=2, size=(width, height, 1), format="rgba8unorm-srgb", usage=wgpu.TextureUsage.COPY_SRC
+        )
         self.renderer = gfx.WgpuRenderer(
             self.target,
             pixel_scale=float(given["scale"]) if "scale" in given else None,

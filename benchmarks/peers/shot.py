@@ -43,9 +43,7 @@ class Shot:
     def from_json(text: str) -> Shot:
         """The inverse of :meth:`to_json`."""
         data = json.loads(text)
-        points = tuple(
-            PointLight(tuple(p["position"]), tuple(p["intensity"]), p["radius"]) for p in data.pop("points")
-        )
+        points = tuple(PointLight(tuple(p["position"]), tuple(p["intensity"]), p["radius"]) for p in data.pop("points"))
         return Shot(points=points, **{key: tuple(v) if isinstance(v, list) else v for key, v in data.items()})
 
 

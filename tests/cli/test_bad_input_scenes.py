@@ -1,7 +1,8 @@
 """Scene files that are damaged, hostile or not there: told by file and place in it, before anything is rendered."""
 
-import json
+import os
 import struct
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -24,8 +25,7 @@ def scene_graph(folder: Path, source: str) -> Path:
 
 
 def bomb(width: int, height: int) -> bytes:
-    """A PNG of a few bytes that claims ``width`` x ``height`` pixels."""
-    import zlib
+    """A PNG that claims ``width`` x ``height`` pixels and holds 64 bytes of them."""
 
     def chunk(kind: bytes, body: bytes) -> bytes:
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
@@ -64,7 +64,7 @@ def changed(pointer: str, value: Any) -> Callable[[TinyGltf], None]:
 
 SCENES: dict[str, tuple[Callable[[TinyGltf], None], str, int, str]] = {
     "view past the buffer": (changed("bufferViews/0/byteLength", 10**6), "RG607", 1, "/bufferViews/0"),
-    "count past the view": (changed("accessors/0/count", 1000), "RG607", 1, "/accessors/0"),
+    "count past the view": (changed("accessors/2/count", 1000), "RG607", 1, "/accessors/2"),
     "offset past the view": (changed("accessors/0/byteOffset", 1 << 40), "RG607", 1, "/accessors/0"),
     "accessor that is not there": (changed("meshes/0/primitives/0/indices", 99), "RG606", 1, "/meshes/0"),
     "NaN in positions": (nan_positions, "RG610", 1, "nan"),
@@ -113,15 +113,7 @@ def test_garbage_as_a_scene(rg: Rg, tmp_path: Path, content: bytes) -> None:
     for name in ("bad.glb", "bad.gltf"):
         (tmp_path / name).write_bytes(content)
         outcome = rg("plan", str(scene_graph(tmp_path, name)))
-        assert outcome.code == 2
-        assert_refused(outcome, 2, "RG60", name) if False else assert_unreadable(outcome.err, name)
-
-
-def assert_unreadable(text: str, name: str) -> None:
-    assert "RG602" in text or "RG603" in text
-    assert name in text
-    assert "help:" in text
-    assert "Traceback" not in text
+        assert_refused(outcome, 2, "RG603" if "RG603" in outcome.err else "RG602", name)
 
 
 def test_json_error_of_a_gltf_has_a_position(rg: Rg, tmp_path: Path) -> None:
@@ -130,8 +122,6 @@ def test_json_error_of_a_gltf_has_a_position(rg: Rg, tmp_path: Path) -> None:
 
 
 def test_a_scene_that_is_a_folder_or_a_pipe(rg: Rg, tmp_path: Path) -> None:
-    import os
-
     (tmp_path / "folder.glb").mkdir()
     os.mkfifo(tmp_path / "pipe.glb")
     for name in ("folder.glb", "pipe.glb"):
@@ -155,7 +145,7 @@ IMAGES: dict[str, tuple[bytes | None, str, str]] = {
     "empty.png": (b"", "RG312", "empty.png"),
     "garbage.png": (b"this is no picture", "RG312", "garbage.png"),
     "cut.png": (bomb(8, 8)[:40], "RG312", "cut.png"),
-    "bomb.png": (bomb(60000, 60000), "RG307", "16384"),
+    "bomb.png": (bomb(60000, 60000), "RG312", "3600000000"),
     "cut.hdr": (b"#?RADIANCE\n\n-Y 4 +X", "RG312", "cut.hdr"),
     "bomb.hdr": (b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 99999 +X 99999\n", "RG3", "bomb.hdr"),
     "notes.txt": (b"hello", "RG312", "notes.txt"),
@@ -184,9 +174,8 @@ def test_image_files_of_resources(rg: Rg, tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.gpu
-@pytest.mark.parametrize("content", [bomb(8, 8), bomb(8, 8)[:-30]], ids=["too little data", "cut"])
-def test_an_image_whose_header_alone_is_sound(rg: Rg, tmp_path: Path, content: bytes) -> None:
-    (tmp_path / "half.png").write_bytes(content)
+def test_an_image_whose_header_alone_is_sound(rg: Rg, tmp_path: Path) -> None:
+    (tmp_path / "half.png").write_bytes(bomb(8, 8))
     graph = write_graph(
         tmp_path,
         resources="  a: {format: rgba16f}\n  picture: {file: half.png}\n",
@@ -200,6 +189,4 @@ def test_an_image_whose_header_alone_is_sound(rg: Rg, tmp_path: Path, content: b
 
 def test_gltf_json_bomb_of_depth(rg: Rg, tmp_path: Path) -> None:
     (tmp_path / "deep.gltf").write_text('{"asset": {"version": "2.0"}, "extras": ' + "[" * 100_000 + "]" * 100_000 + "}")
-    outcome = rg("plan", str(scene_graph(tmp_path, "deep.gltf")))
-    assert_refused(outcome, 2, "RG603", "deep.gltf")
-    assert json  # the module the loader reads with
+    assert_refused(rg("plan", str(scene_graph(tmp_path, "deep.gltf"))), 2, "RG603", "deep.gltf")
