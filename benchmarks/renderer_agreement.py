@@ -50,7 +50,7 @@ def compare(first: Path, second: Path) -> None:
                 f"demo frame {timing['frame_ms']['median']:.1f} ms, proof {proof}"
             )
         print(
-            "\n| image | largest difference | mean | pixels off by more than 2 | by more than 8 |\n|---|---|---|---|---|"
+            "\n| image | largest difference | mean | pixels off by more than 2 | more than 8 |\n|---|---|---|---|---|"
         )
         for name in sorted(set(a.files) & set(b.files) - {"record"}):
             if a[name].dtype != np.uint8:

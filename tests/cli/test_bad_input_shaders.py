@@ -71,7 +71,7 @@ def test_what_is_not_finite_is_found(rg: Rg, tmp_path: Path, bits: str, value: s
     graph = str(write_graph(tmp_path, shader=SHADER.replace("0.5,", f"{there} ? uintBitsToFloat({bits}) : 0.5,")))
     out = tmp_path / "out"
     outcome = rg("render", graph, "-o", str(out), "--check-finite", "--samples", "0")
-    assert_refused(outcome, 1, "RG565", "'paint'", "'a'", "(3, 2)", value, "graph.yaml:6:3")
+    assert_refused(outcome, 1, "RG565", "'paint.", "'a'", "(3, 2)", value, "graph.yaml:6:3")
     assert not out.exists()
     assert rg("render", graph, "-o", str(out), "--samples", "0").code == 0  # without the check it is not an error
 
