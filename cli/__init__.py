@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import typer
 
-from rendergraph.cli import catalogue, environment, inspect, render, scaffold
+from rendergraph.cli import bench, catalogue, diff, environment, inspect, plan, render, scaffold, validate
 
 if TYPE_CHECKING:
     from rendergraph.document.messages import RenderGraphError
@@ -45,7 +45,7 @@ def _root(
     """Options before the command."""
 
 
-for group in (render, inspect, catalogue, environment, scaffold):
+for group in (render, bench, diff, validate, plan, inspect, catalogue, environment, scaffold):
     group.register(app)
 
 

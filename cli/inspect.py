@@ -1,4 +1,4 @@
-"""`rg validate`, `plan`, `graph`, `explain`: everything that can be said of a graph without a GPU."""
+"""`rg graph` and `explain`: what becomes of a graph, and why, without a GPU."""
 
 from __future__ import annotations
 
@@ -7,22 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rendergraph.cli.options import (
-    Format,
-    FormatOption,
-    FramesOption,
-    FullOption,
-    GraphArgument,
-    NoAliasOption,
-    NoCullOption,
-    OrderOption,
-    SceneOption,
-    SeedOption,
-    SetOption,
-    SizeOption,
-    parse_order,
-    parse_size,
-)
+from rendergraph.cli.options import Format, FormatOption, FullOption, GraphArgument, SceneOption, SetOption
 
 
 class Drawing(StrEnum):
@@ -35,69 +20,8 @@ class Drawing(StrEnum):
 
 def register(app: typer.Typer) -> None:
     """Add the commands."""
-    app.command("validate")(validate)
-    app.command("plan")(plan)
     app.command("graph")(graph)
     app.command("explain")(explain)
-
-
-def validate(
-    graphs: Annotated[list[str], typer.Argument(metavar="GRAPH...", help="Graph files, or shipped graphs' names.")],
-    overrides: SetOption = None,
-    format: FormatOption = Format.TEXT,
-) -> None:
-    """Check graphs without a GPU; exit 1 when one has errors."""
-    from rendergraph.cli.console import report, write_json, write_text
-    from rendergraph.document.messages import Diagnostic
-    from rendergraph.document.render_text import diagnostic_json
-    from rendergraph.plan.validate import validate_graph
-
-    code = 0
-    findings: list[Diagnostic] = []
-    for name in graphs:
-        diagnostics, failed = validate_graph(name, overrides or ())
-        findings += diagnostics
-        code = max(code, failed)
-        if format is Format.TEXT:
-            report(diagnostics)
-            if not any(d.severity == "error" for d in diagnostics):
-                write_text(f"{name}: valid")
-    if format is Format.JSON:
-        write_json([diagnostic_json(d) for d in findings])
-    raise typer.Exit(code)
-
-
-def plan(
-    graph: GraphArgument,
-    overrides: SetOption = None,
-    scene: SceneOption = None,
-    size: SizeOption = None,
-    frames: FramesOption = None,
-    no_alias: NoAliasOption = False,
-    no_cull: NoCullOption = False,
-    full: FullOption = False,
-    order: OrderOption = "default",
-    order_seed: SeedOption = 0,
-    format: FormatOption = Format.TEXT,
-) -> None:
-    """Show what a run would do: order, barriers, lifetimes, memory, and what is left out."""
-    from rendergraph.cli.console import report, write_json, write_table
-    from rendergraph.document.load import load_document
-    from rendergraph.plan.plan import PlanOptions
-    from rendergraph.report.plan_table import order_table
-    from rendergraph.report.resources import resources_record
-    from rendergraph.report.tables import lifetime_table
-    from rendergraph.run.plan_document import plan_document
-
-    document = load_document(graph, overrides or ())
-    options = PlanOptions(alias=not no_alias, cull=not no_cull, order=parse_order(order), seed=order_seed)
-    planned = plan_document(document, options, scene=scene, size=parse_size(size), frames=frames, full=full)
-    report(planned.warnings)
-    record = resources_record(planned.plan, document.model.title)
-    if format is Format.JSON:
-        write_json(record)
-    else:
-        write_table(order_table(planned.plan), lifetime_table(record))
 
 
 def graph(

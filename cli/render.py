@@ -45,6 +45,8 @@ def render(
     capture: Annotated[
         list[str] | None, typer.Option("--capture", metavar="RESOURCE", help="Save this target too (repeatable).")
     ] = None,
+    html: Annotated[bool, typer.Option("--html", help="Write report.html too: graph, times, memory, targets.")] = False,
+    trace: Annotated[bool, typer.Option("--trace", help="Write trace.json too, for Perfetto.")] = False,
     poison: Annotated[bool, typer.Option("--poison", help="Fill every target with NaN before its first use.")] = False,
     no_alias: NoAliasOption = False,
     no_cull: NoCullOption = False,
@@ -59,23 +61,30 @@ def render(
     ] = None,
     format: FormatOption = Format.TEXT,
 ) -> None:
-    """Run a graph; write its images, timing.json and resources.json, and print both as tables."""
+    """Run a graph; write its images and records, and print the records as tables; exit 1 above the budget."""
     from rendergraph.cli.console import progress_bar, report, write_json, write_table, write_text
     from rendergraph.document.load import load_document
     from rendergraph.document.whole_files import require_folder
+    from rendergraph.measure.budget import check_run
     from rendergraph.plan.plan import PlanOptions
+    from rendergraph.report.html import TargetGallery
     from rendergraph.report.tables import lifetime_table, timing_table
+    from rendergraph.report.trace import require_samples
     from rendergraph.report.write import write_result
     from rendergraph.run.render import RenderOptions, render_document
 
     document = load_document(graph, overrides or ())
     require_folder(output)
+    if trace:
+        require_samples(samples)
+    page = TargetGallery() if html else None
     options = RenderOptions(
         size=parse_size(size),
         frames=frames,
         samples=samples,
         scene=scene,
         captures=tuple(capture or ()),
+        inspect=page.add if page else None,
         poison=poison,
         full=full,
         check_finite=check_finite,
@@ -84,11 +93,14 @@ def render(
     )
     with progress_bar() as progress:
         result = render_document(document, options, progress)
-        written = write_result(result, document, output)
+        written = write_result(result, document, output, page=page, trace=trace, full=full)
     report(result.warnings)
     if format is Format.JSON:
         write_json({"timing": written.timing, "resources": written.resources, "files": [str(f) for f in written.files]})
-        return
-    write_table(timing_table(written.timing), lifetime_table(written.resources))
-    for file in written.files:
-        write_text(f"wrote {file}")
+    else:
+        write_table(timing_table(written.timing), lifetime_table(written.resources))
+        for file in written.files:
+            write_text(f"wrote {file}")
+    over = check_run(document, written.timing, written.resources)
+    report(over)
+    raise typer.Exit(int(any(finding.severity == "error" for finding in over)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from rendergraph.document.formats import FORMATS
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
@@ -19,6 +21,9 @@ class CopyParams(Params):
     blit: bool = knob(False, "Scale to the destination's size, convert the format, or resolve samples.")
     linear: bool = knob(False, "Interpolate when a blit scales, instead of taking the nearest texel.")
     mips: bool = knob(False, "Then fill the destination's lower mip levels by averaging.")
+    path: Literal["device", "host"] = knob(
+        "device", "host: through the host's memory, waiting for the device every frame; to measure what that costs."
+    )
 
 
 class Copy(Node[CopyParams]):
@@ -43,9 +48,12 @@ class Copy(Node[CopyParams]):
             problem = "" if one.bytes == two.bytes else problem
         else:
             problem, hint = "a texture and a buffer cannot be copied into each other", "use the compute node"
+        if not problem and self.params.path == "host":
+            problem, hint = self._host_problem(one, two), "use path: device"
         if problem:
             raise misuse(b, problem, hint or "choose matching resources")
-        b.copy("copy", source, destination, blit=self.params.blit, linear=self.params.linear)
+        host = self.params.path == "host"
+        b.copy("copy", source, destination, blit=self.params.blit, linear=self.params.linear, host=host)
         if self.params.mips and isinstance(two, TextureDesc):
             b.mips("mips", destination)
 
@@ -79,6 +87,15 @@ class Copy(Node[CopyParams]):
         if one.layers != two.layers:
             return f"the source has {one.layers} layers, the destination {two.layers}"
         return self._mip_problem(one, two, same=False)
+
+    def _host_problem(self, one: TextureDesc | BufferDesc, two: TextureDesc | BufferDesc) -> str:
+        if isinstance(one, BufferDesc) or isinstance(two, BufferDesc):
+            return ""
+        if self.params.blit or one.format != two.format:
+            return "texels that pass through the host are neither scaled nor converted"
+        if one.samples > 1 or FORMATS[one.format].stencil:
+            return "several samples a texel, or depth with stencil, do not pass through the host"
+        return ""
 
     def _mip_problem(self, one: TextureDesc, two: TextureDesc, same: bool = True) -> str:
         if self.params.mips and (two.mips == 1 or FORMATS[two.format].sampler or FORMATS[two.format].depth):

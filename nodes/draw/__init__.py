@@ -15,6 +15,7 @@ from rendergraph.plan.graph import DrawArrays, DrawIndirect, DrawScene, State
 _SUFFIXES = {
     "vertex": ".vert", "fragment": ".frag", "geometry": ".geom", "tess_control": ".tesc", "tess_evaluation": ".tese",
 }  # fmt: skip
+_MOST_SEPARATE = 65536  # every call is recorded
 
 
 class DrawParams(UserRasterParams):
@@ -34,6 +35,11 @@ class DrawParams(UserRasterParams):
     indirect: str | None = knob(None, "A buffer read that holds draw arguments, four 32-bit words a draw.")
     draws: int = knob(1, "Draws in the `indirect` buffer.", ge=1, le=65536)
     instances: int = knob(1, "Instances of each draw.", ge=1, le=1 << 24)
+    separate: bool = knob(
+        False,
+        "With `vertices`: a draw call an instance, in place of one instanced call; the shader tells instances apart by "
+        "`gl_BaseInstanceARB + gl_InstanceID`. To measure what draw calls cost.",
+    )
     topology: Literal["triangles", "triangle_strip", "lines", "line_strip", "points"] = knob(
         "triangles", "How vertices make primitives; tessellation shaders take triangles as patches of three."
     )
@@ -52,6 +58,8 @@ class DrawParams(UserRasterParams):
             raise ValueError(
                 "set one of queues (the scene's geometry), vertices (a number of them) and indirect (a buffer)"
             )
+        if self.separate and (self.vertices == 0 or self.instances > _MOST_SEPARATE):
+            raise ValueError(f"separate draws take vertices, and at most {_MOST_SEPARATE} instances")
         if self.vertex is None and (not self.queues or self.tess_evaluation is not None):
             raise ValueError("only the scene's geometry, without tessellation, is drawn without a vertex shader")
         if self.tess_control is not None and self.tess_evaluation is None:
@@ -126,4 +134,4 @@ class Draw(Node[DrawParams]):
         if params.indirect is not None:
             require_ports(b, "indirect", [params.indirect], b.inputs, "read")
             return DrawIndirect(b.input(params.indirect), count=params.draws, topology=topology)
-        return DrawArrays(params.vertices, params.instances, topology)
+        return DrawArrays(params.vertices, params.instances, topology, params.separate)

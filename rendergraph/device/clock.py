@@ -9,9 +9,9 @@ from typing import Final, Protocol
 from rendergraph.device import enums as e
 from rendergraph.device.clock_proof import ClockProof, prove_clock
 from rendergraph.device.context import Device
-from rendergraph.device.timestamps import create_timestamp, read_available, read_timestamp
+from rendergraph.device.timestamps import create_timestamp, read_available, read_device_time, read_timestamp
 
-#: Frames whose timestamps may be in flight before the oldest is waited for.
+#: Frames whose timestamps are expected to be in flight at once.
 RING: Final = 4
 
 
@@ -20,13 +20,17 @@ class Clock(Protocol):
 
     ``end_frame`` gives the frame's nanoseconds a pass once they are known, else ``None``; ``drain`` waits for and
     gives every frame not given out yet, oldest first. ``submit_ns`` and ``process_ns`` are the last frame's
-    wall time spent submitting and CPU time of all the process's threads, a pass.
+    wall time spent submitting and CPU time of all the process's threads, a pass; ``submit_starts`` when submitting
+    began. ``starts`` are the drained frames' moments at which the device began each pass. Moments are nanoseconds of
+    ``time.perf_counter_ns``, whichever counter measured them.
     """
 
     name: str
     proof: ClockProof
     submit_ns: list[int]
     process_ns: list[int]
+    submit_starts: list[int]
+    starts: list[list[int]]
 
     def begin_frame(self) -> None: ...
     def begin(self, index: int) -> None: ...
@@ -44,14 +48,17 @@ class FinishWallClock:
     name: str = "finish_wall"
     submit_ns: list[int] = field(default_factory=list)
     process_ns: list[int] = field(default_factory=list)
+    submit_starts: list[int] = field(default_factory=list)
+    starts: list[list[int]] = field(default_factory=list)
     _times: list[int] = field(default_factory=list)
     _frames: list[list[int]] = field(default_factory=list)
+    _begun: list[list[int]] = field(default_factory=list)
     _start: int = 0
     _cpu: int = 0
 
     def begin_frame(self) -> None:
         """Start a frame: whatever was pending is waited for, and no pass pays for it."""
-        self._times, self.submit_ns, self.process_ns = [], [], []
+        self._times, self.submit_ns, self.process_ns, self.submit_starts = [], [], [], []
         self.device.finish()
 
     def begin(self, index: int) -> None:
@@ -64,17 +71,20 @@ class FinishWallClock:
         submitted = time.perf_counter_ns()
         self.device.finish()
         self._times.append(time.perf_counter_ns() - self._start)
+        self.submit_starts.append(self._start)
         self.submit_ns.append(submitted - self._start)
         self.process_ns.append(time.process_time_ns() - self._cpu)
 
     def end_frame(self) -> list[int] | None:
         """This frame's nanoseconds a pass."""
         self._frames.append(self._times)
+        self._begun.append(self.submit_starts)
         return self._times
 
     def drain(self) -> list[list[int]]:
         """Every frame since the last drain."""
         frames, self._frames = self._frames, []
+        self.starts, self._begun = self._begun, []
         return frames
 
 
@@ -87,41 +97,45 @@ class TimestampClock:
     name: str = "gpu_timestamp"
     submit_ns: list[int] = field(default_factory=list)
     process_ns: list[int] = field(default_factory=list)
-    _ring: list[list[int]] = field(default_factory=lambda: [[] for _ in range(RING)])
-    _pending: list[tuple[int, int]] = field(default_factory=list)  # (ring slot, passes), oldest first
+    submit_starts: list[int] = field(default_factory=list)
+    starts: list[list[int]] = field(default_factory=list)
+    _free: list[list[int]] = field(default_factory=lambda: [[] for _ in range(RING)])
+    _queries: list[int] = field(default_factory=list)
+    # (queries, passes, host time less device time), oldest first
+    _pending: list[tuple[list[int], int, int]] = field(default_factory=list)
     _frames: list[list[int]] = field(default_factory=list)
-    _frame: int = 0
+    _begun: list[list[int]] = field(default_factory=list)
+    _ahead: int = 0
     _start: int = 0
     _cpu: int = 0
 
     def begin_frame(self) -> None:
-        """Start a frame; waits for the frame whose queries are used again."""
-        if len(self._pending) == RING:
-            self._frames.append(self._collect())
-        self.submit_ns, self.process_ns = [], []
+        """Start a frame. Where the device is behind by more frames than the ring holds, it grows: nothing waits."""
+        self._queries = self._free.pop(0) if self._free else []
+        self.submit_ns, self.process_ns, self.submit_starts = [], [], []
+        self._ahead = time.perf_counter_ns() - read_device_time(self.device)
 
     def begin(self, index: int) -> None:
         """Start pass ``index``."""
-        queries = self._ring[self._frame % RING]
-        while len(queries) < 2 * index + 2:
-            queries.append(create_timestamp(self.device))
+        while len(self._queries) < 2 * index + 2:
+            self._queries.append(create_timestamp(self.device))
         self._cpu = time.process_time_ns()
         self._start = time.perf_counter_ns()
-        self.device.gl.glQueryCounter(queries[2 * index], e.TIMESTAMP)
+        self.device.gl.glQueryCounter(self._queries[2 * index], e.TIMESTAMP)
 
     def end(self, index: int) -> None:
         """End pass ``index``."""
-        self.device.gl.glQueryCounter(self._ring[self._frame % RING][2 * index + 1], e.TIMESTAMP)
+        self.device.gl.glQueryCounter(self._queries[2 * index + 1], e.TIMESTAMP)
+        self.submit_starts.append(self._start)
         self.submit_ns.append(time.perf_counter_ns() - self._start)
         self.process_ns.append(time.process_time_ns() - self._cpu)
 
     def end_frame(self) -> list[int] | None:
         """The oldest unread frame's nanoseconds a pass, if the device has finished it."""
-        self._pending.append((self._frame % RING, len(self.submit_ns)))
-        self._frame += 1
+        self._pending.append((self._queries, len(self.submit_ns), self._ahead))
         self.device.gl.glFlush()
-        slot, count = self._pending[0]
-        if count and not read_available(self.device, self._ring[slot][2 * count - 1]):
+        queries, count, _ = self._pending[0]
+        if count and not read_available(self.device, queries[2 * count - 1]):
             return None
         self._frames.append(self._collect())
         return self._frames[-1]
@@ -131,12 +145,16 @@ class TimestampClock:
         while self._pending:
             self._frames.append(self._collect())
         frames, self._frames = self._frames, []
+        self.starts, self._begun = self._begun, []
         return frames
 
     def _collect(self) -> list[int]:
-        slot, count = self._pending.pop(0)
-        stamps = [read_timestamp(self.device, query) for query in self._ring[slot][: 2 * count]]
-        return [stamps[2 * i + 1] - stamps[2 * i] for i in range(count)]
+        queries, count, ahead = self._pending.pop(0)
+        stamps = [read_timestamp(self.device, query) for query in queries[: 2 * count]]
+        self._free.append(queries)
+        self._begun.append([stamps[2 * i] + ahead for i in range(count)])
+        mask = (1 << self.proof.counter_bits) - 1  # a counter of fewer than 64 bits may have wrapped in between
+        return [(stamps[2 * i + 1] - stamps[2 * i]) & mask for i in range(count)]
 
 
 def choose_clock(device: Device) -> Clock:

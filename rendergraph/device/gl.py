@@ -192,6 +192,7 @@ SIGNATURES: Final[dict[str, str]] = {
     "glProgramUniformMatrix3fv": "v uiibp",
     "glProgramUniformMatrix4fv": "v uiibp",
     # ---- queries and sync
+    "glGenQueries": "v ip",
     "glCreateQueries": "v uip",
     "glDeleteQueries": "v ip",
     "glIsQuery": "b u",

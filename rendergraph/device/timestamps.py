@@ -27,3 +27,10 @@ def read_available(device: Device, query: int) -> bool:
     value = ctypes.c_int()
     device.gl.glGetQueryObjectiv(query, e.QUERY_RESULT_AVAILABLE, ctypes.byref(value))
     return bool(value.value)
+
+
+def read_device_time(device: Device) -> int:
+    """The device's counter now, in nanoseconds, without waiting for the commands before."""
+    value = ctypes.c_int64()
+    device.gl.glGetInteger64v(e.TIMESTAMP, ctypes.byref(value))
+    return value.value

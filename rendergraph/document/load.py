@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+from rendergraph.document.budget_checks import check_budget_names
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.document.model_errors import MAX_MISTAKES, Mistake, validate_strictly
 from rendergraph.document.models import DocumentModel
@@ -51,12 +52,22 @@ class Document:
         """
         return self.positions.find(loc, key=key)
 
+    def _repr_html_(self) -> str:
+        from rendergraph.report.notebook import document_html
+
+        return document_html(self)
+
+    def _repr_png_(self) -> bytes | None:
+        from rendergraph.report.notebook import document_picture
+
+        return document_picture(self)
+
 
 def load_document(path: str | Path, overrides: Sequence[str] = ()) -> Document:
     """Read and validate a graph file, or the shipped graph of that name; ``overrides`` are ``--set`` arguments.
 
-    Raises ``RenderGraphError`` with everything found wrong (RG100 to RG131, RG200 to RG207, and RG301 to RG309 for keys
-    of one resource), in file order; its exit code is 2 when the file or an override cannot be read at all, else 1.
+    Raises ``RenderGraphError`` with everything found wrong (RG100 to RG131, RG200 to RG207, RG706, and RG301 to
+    RG309 for keys of one resource), in file order; its exit code is 2 when the file or an override cannot be read at all, else 1.
     """
     file = find_graph(path)
     data = read_source(file)
@@ -68,7 +79,12 @@ def load_document(path: str | Path, overrides: Sequence[str] = ()) -> Document:
     model, mistakes = validate_strictly(DocumentModel, value)
     params, node_problems = check_nodes(value, positions.find_at)
     problems = _without_echoes(
-        [*reading.problems, *problems], [*(_problem(m, value, positions) for m in mistakes), *node_problems]
+        [*reading.problems, *problems],
+        [
+            *(_problem(m, value, positions) for m in mistakes),
+            *node_problems,
+            *check_budget_names(value, positions.find_at),
+        ],
     )
     if model is None or any(p.severity == "error" for p in problems):
         raise RenderGraphError(_not_too_many(problems))

@@ -124,6 +124,9 @@ class OutputModel(Model):
     format: FormatName | None = Field(None, description="Format, when the resource is not declared.")
 
 
+PassMilliseconds = Annotated[float, Field(gt=0)]
+
+
 class BudgetModel(Model):
     """Limits that fail the run."""
 
@@ -131,7 +134,12 @@ class BudgetModel(Model):
     transient_mib: float | None = Field(
         None, gt=0, description="Memory of transient resources.", json_schema_extra={"unit": "MiB"}
     )
-    draws: int | None = Field(None, ge=0, description="Draw calls a frame.")
+    passes: dict[Name, PassMilliseconds] = Field(
+        default_factory=dict,
+        description="Time of single passes, by name; each above 0.",
+        json_schema_extra={"unit": "ms"},
+    )
+    draws: int | None = Field(None, ge=0, description="Draws a frame; each draw of a multi-draw counts.")
     flip: float | None = Field(None, ge=0, le=1, description="Mean FLIP error of the image against its reference.")
 
 

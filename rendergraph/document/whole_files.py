@@ -54,6 +54,13 @@ def require_folder(folder: Path) -> None:
         raise cannot_write(folder, error) from None
 
 
+def require_file(path: Path) -> None:
+    """Raise RenderGraphError RG560 where :func:`whole_file` could not write; see :func:`require_folder`."""
+    require_folder(path.parent)
+    if path.is_dir():
+        raise cannot_write(path, IsADirectoryError(errno.EISDIR, ""))
+
+
 def cannot_write(path: Path, error: OSError) -> RenderGraphError:
     """The diagnostic for a failed write."""
     return RenderGraphError([diagnose("RG560", path=str(path), reason=reason_of(error))], exit_code=2)

@@ -317,15 +317,26 @@ class Builder:
             self.position,
         ))  # fmt: skip
 
-    def copy(self, step: str, source: str, destination: str, *, blit: bool = False, linear: bool = False) -> None:
-        """Copy a texture (or buffer) whole; ``blit`` scales, converts or resolves multisamples."""
+    def copy(
+        self,
+        step: str,
+        source: str,
+        destination: str,
+        *,
+        blit: bool = False,
+        linear: bool = False,
+        host: bool = False,
+    ) -> None:
+        """Copy a texture (or buffer) whole; ``blit`` scales, converts or resolves multisamples; ``host`` goes through
+        the host's memory.
+        """
         accesses = (Access(source, Usage.COPY_FROM), Access(destination, Usage.COPY_TO, load=False))
         found = self._find(source).desc
         work: Work
         if isinstance(found, BufferDesc):
-            work = CopyBuffer(source, destination, found.bytes)
+            work = CopyBuffer(source, destination, found.bytes, host)
         else:
-            work = CopyTexture(source, destination, blit, linear)
+            work = CopyTexture(source, destination, blit, linear, host)
         self._add(SubPass(self._step(step), self.pass_name, accesses, work, position=self.position))
 
     def clear(self, step: str, resource: str, value: Color4 | int = (0.0, 0.0, 0.0, 0.0)) -> None:

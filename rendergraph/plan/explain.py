@@ -87,15 +87,20 @@ def explain_code(code: str) -> str:
     return "\n".join([*lines, "", message.explain] if message.explain else lines)
 
 
+def all_decisions(plan: Plan) -> list[Decision]:
+    """Those of expansion and of every planning phase, in the order a reader asks."""
+    counted = {id(decision) for decision in plan.decisions}
+    decisions = [*(d for d in plan.graph.decisions if id(d) not in counted), *plan.decisions]
+    return sorted(decisions, key=lambda d: _KINDS.index(d.kind) if d.kind in _KINDS else len(_KINDS))
+
+
 def explain_subject(plan: Plan, name: str | None = None) -> list[str]:
     """Sentences on a pass, sub-pass or resource: what became of it and why; on the whole plan without a name.
 
     Raises ``RenderGraphError`` (RG228) for a name the graph does not have.
     """
     graph = plan.graph
-    counted = {id(decision) for decision in plan.decisions}
-    decisions = [*(d for d in graph.decisions if id(d) not in counted), *plan.decisions]
-    decisions.sort(key=lambda d: _KINDS.index(d.kind) if d.kind in _KINDS else len(_KINDS))
+    decisions = all_decisions(plan)
     if name is None:
         return [explain_decision(decision) for decision in decisions]
     steps = {step.name for found in graph.passes.values() for step in found.subpasses}

@@ -207,11 +207,15 @@ class Fullscreen:
 
 @dataclass(frozen=True, slots=True)
 class DrawArrays:
-    """``vertices`` vertices, ``instances`` times, with no vertex attributes: the shader makes them from gl_VertexID."""
+    """``vertices`` vertices, ``instances`` times, with no vertex attributes: the shader makes them from gl_VertexID.
+
+    ``separate``: a draw call an instance, told apart by the base instance, in place of one instanced call.
+    """
 
     vertices: int
     instances: int = 1
     topology: str = "triangles"  # triangles | triangle_strip | lines | line_strip | points | patches (of 3 vertices)
+    separate: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,21 +258,26 @@ class DispatchIndirect:
 
 @dataclass(frozen=True, slots=True)
 class CopyTexture:
-    """Texel for texel (``blit=False``: same size and view class) or a filtered blit or multisample resolve."""
+    """Texel for texel (``blit=False``: same size and view class) or a filtered blit or multisample resolve.
+
+    ``host``: through the host's memory, waiting for the device on the way.
+    """
 
     source: str
     destination: str
     blit: bool = False
     linear: bool = False
+    host: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class CopyBuffer:
-    """Bytes from one buffer to another."""
+    """Bytes from one buffer to another; ``host``: through the host's memory, waiting for the device on the way."""
 
     source: str
     destination: str
     bytes: int
+    host: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -377,3 +386,13 @@ class Graph:
     barriers: tuple[BarrierIntent, ...] | None = None  # None: the author stated none, all are derived
     features: SceneFeatures | None = None
     decisions: tuple[Decision, ...] = ()
+
+    def _repr_html_(self) -> str:
+        from rendergraph.report.notebook import graph_html
+
+        return graph_html(self)
+
+    def _repr_png_(self) -> bytes | None:
+        from rendergraph.report.notebook import graph_picture
+
+        return graph_picture(self)

@@ -54,3 +54,13 @@ def find_load(graph: Graph, lifetimes: Mapping[str, Lifetime]) -> tuple[int, tup
         if now > load:
             load, peak = now, position
     return load, tuple(name for name in names if lifetimes[name].first <= peak <= lifetimes[name].last)
+
+
+def live_bytes(graph: Graph, lifetimes: Mapping[str, Lifetime], length: int) -> tuple[int, ...]:
+    """Bytes of transient resources live at each of ``length`` positions; the most of them is LOAD."""
+    live = [0] * length
+    for name in transients(graph, lifetimes):
+        life = lifetimes[name]
+        for position in range(life.first, life.last + 1):
+            live[position] += storage_bytes(graph.resources[name])
+    return tuple(live)

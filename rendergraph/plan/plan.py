@@ -104,3 +104,13 @@ class Plan:
     barriers: tuple[Barrier, ...]  # by index, at most one an index
     totals: MemoryTotals
     decisions: tuple[Decision, ...] = field(default_factory=tuple)
+
+    def _repr_html_(self) -> str:
+        from rendergraph.report.notebook import plan_html
+
+        return plan_html(self)
+
+    def _repr_png_(self) -> bytes:
+        from rendergraph.report.graph_png import graph_png
+
+        return graph_png(self)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rendergraph.document.load import Document, load_document
@@ -20,18 +20,26 @@ def plan_without_scene(document: Document, options: PlanOptions) -> tuple[Plan, 
     return plan, (*document.warnings, *warnings, *more)
 
 
-def validate_graph(path: str | Path, overrides: Sequence[str] = ()) -> tuple[tuple[Diagnostic, ...], int]:
-    """All findings of one file, and the exit code they deserve: 0 fine (warnings allowed), 1 errors, 2 unreadable."""
+def validate_graph(
+    path: str | Path,
+    overrides: Sequence[str] = (),
+    check: Callable[[Document, Plan], Sequence[Diagnostic]] = lambda document, plan: (),
+) -> tuple[tuple[Diagnostic, ...], int]:
+    """All findings of one file, and the exit code they deserve: 0 fine (warnings allowed), 1 errors, 2 unreadable.
+
+    ``check`` may find more in the document and its plan.
+    """
     try:
         document = load_document(path, overrides)
     except RenderGraphError as error:
         return error.diagnostics, error.exit_code
     missing = _missing_scene(document)
     try:
-        _, warnings = plan_without_scene(document, PlanOptions())
+        plan, warnings = plan_without_scene(document, PlanOptions())
     except RenderGraphError as error:
         return (*missing, *error.diagnostics), error.exit_code
-    return (*missing, *warnings), 1 if missing else 0
+    findings = (*missing, *warnings, *check(document, plan))
+    return findings, int(any(finding.severity == "error" for finding in findings))
 
 
 def _missing_scene(document: Document) -> tuple[Diagnostic, ...]:

@@ -11,7 +11,7 @@ from html import escape
 from itertools import pairwise
 
 from rendergraph.plan.plan import Plan
-from rendergraph.report.layered import Box, lay_out
+from rendergraph.report.layered import Box, Layout, lay_out
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,8 +130,8 @@ _STYLE = (
 )
 
 
-def svg(graph: Drawing) -> str:
-    """One self-contained SVG, readable on light and dark grounds."""
+def place(graph: Drawing) -> Layout:
+    """Where everything goes: boxes of passes by ``pass NAME``, of contents by their key, in SVG's pixels."""
     sizes: dict[str, tuple[float, float]] = {}
     edges: list[tuple[str, str]] = []
     for content in graph.contents:
@@ -146,7 +146,14 @@ def svg(graph: Drawing) -> str:
         if content.writer is not None:
             edges.append((f"pass {content.writer}", content.key))
         edges += [(content.key, f"pass {reader}") for reader in content.readers]
-    layout = lay_out(sizes, edges)
+    return lay_out(sizes, edges)
+
+
+def svg(graph: Drawing, link: Callable[[str, str], str] | None = None) -> str:
+    """One self-contained SVG, readable on light and dark grounds. ``link(kind, name)`` gives where a ``"pass"`` or a
+    ``"resource"`` leads when it is clicked; empty for nowhere.
+    """
+    layout = place(graph)
     below = 40 if graph.history else 0
     width, height = f"{layout.width:.0f}", f"{layout.height + below:.0f}"
     parts = [
@@ -163,12 +170,18 @@ def svg(graph: Drawing) -> str:
     parts += [_next_frame(layout.boxes[s], layout.boxes[t], layout.height + below - 16) for s, t in graph.history]
     for name, text in graph.nodes.items():
         box = layout.boxes[f"pass {name}"]
-        parts.append(_rect(box, "pass", 6) + _text(box, 18, "name", name) + _text(box, 34, "text", text))
+        shape = _rect(box, "pass", 6) + _text(box, 18, "name", name) + _text(box, 34, "text", text)
+        parts.append(_linked(shape, link("pass", name) if link else ""))
     for content in graph.contents:
         box = layout.boxes[content.key]
-        parts.append(_rect(box, content.kind, _PILL_HEIGHT / 2) + _text(box, 15, "text", content.resource))
+        shape = _rect(box, content.kind, _PILL_HEIGHT / 2) + _text(box, 15, "text", content.resource)
+        parts.append(_linked(shape, link("resource", content.resource) if link else ""))
     parts.append("</svg>")
     return "\n".join(parts)
+
+
+def _linked(shape: str, address: str) -> str:
+    return f'<a href="{escape(address)}">{shape}</a>' if address else shape
 
 
 def _pill(content: Content) -> tuple[float, float]:

@@ -78,6 +78,8 @@ def lifetime_table(record: dict[str, Any]) -> RenderableType:
         f"at the peak: {', '.join(totals['peak']) or 'nothing'} · {len(record['barriers'])} barriers · "
         f"{len(record['culled'])} sub-passes culled"
     )
+    if record["advice"]:
+        text += f"\nto lower it: {record['advice'][0]['why']}"
     return Group(table, Text(text, style="dim"))
 
 

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 import rendergraph
-from rendergraph.run.result import FrameResult
+from rendergraph.plan.graph import SubPass
+from rendergraph.plan.plan import Plan
+from rendergraph.report.counters import add_counters, add_statistics, gigabytes_per_second, statistics_source
+from rendergraph.run.result import DeviceFacts, FrameResult, StepCounters, StepTimes
 
 SCHEMA = "rendergraph.timing/1"
 
@@ -31,42 +35,12 @@ def spread(samples: Sequence[int]) -> dict[str, Any]:
 def timing_record(result: FrameResult, title: str = "") -> dict[str, Any]:
     """The record as JSON-ready data; times in milliseconds, a pass's the sum of its sub-passes', frame by frame."""
     graph, times = result.plan.graph, result.times
-    steps = {step.name: step for step in times.steps}
-    passes: list[dict[str, Any]] = []
-    for name, parent in graph.passes.items():
-        inside = [steps[s.name] for s in parent.subpasses if s.name in steps]
-        if not inside:
-            continue
-        totals = [sum(values) for values in zip(*(s.device_ns for s in inside), strict=True)]
-        passes.append({
-            "name": name,
-            "node": parent.node,
-            "ms": spread(totals),
-            "subpasses": [
-                {
-                    "name": s.name,
-                    "ms": spread(s.device_ns),
-                    "submit_ms": spread(s.submit_ns),
-                    "process_ms": spread(s.process_ns),
-                }
-                for s in inside
-            ],
-        })  # fmt: skip
-    first_use = {s.parent: index for index, s in reversed(list(enumerate(result.plan.order)))}
-    passes.sort(key=lambda p: first_use[p["name"]])
     return {
         "schema": SCHEMA,
         "rendergraph": rendergraph.__version__,
         "title": title,
         "clock": {"name": result.device.clock, "proof": result.device.proof},
-        "device": {
-            "renderer": result.device.renderer,
-            "vendor": result.device.vendor,
-            "version": result.device.version,
-            "cpu": _cpu_name(),
-            "threads": os.cpu_count(),
-            "python": platform.python_version(),
-        },
+        "device": device_record(result.device),
         "size": [graph.frame.width, graph.frame.height],
         "frames": result.frames,
         "warm_up_frames": times.warm_up,
@@ -79,13 +53,95 @@ def timing_record(result: FrameResult, title: str = "") -> dict[str, Any]:
             "first_frame": milliseconds(times.first_frame_ns),
         },
         "frame_ms": spread(times.frames),
-        "passes": passes,
+        "frame_submit_ms": spread(times.frame_submits),
+        "statistics": statistics_source(result.counters, result.device.renderer),
+        "passes": pass_records(result.plan, times.steps, result.counters),
         "steady_state": {
             "objects_created": result.steady.objects_created,
             "programs_compiled": result.steady.programs_compiled,
             "bytes_uploaded": result.steady.bytes_uploaded,
         },
     }
+
+
+def pass_records(
+    plan: Plan, step_times: Sequence[StepTimes], step_counters: Sequence[StepCounters]
+) -> list[dict[str, Any]]:
+    """The passes that ran, in execution order, each with its sub-passes."""
+    times = {step.name: step for step in step_times}
+    counters = {step.name: step for step in step_counters}
+    by_pass: dict[str, list[SubPass]] = {}
+    for subpass in plan.order:
+        by_pass.setdefault(subpass.parent, []).append(subpass)
+    records = []
+    for name, inside in by_pass.items():
+        inside = [s for s in plan.graph.passes[name].subpasses if s in inside]
+        timed = [times[s.name] for s in inside if s.name in times]
+        counted = [counters[s.name] for s in inside if s.name in counters]
+        records.append({
+            "name": name,
+            "node": plan.graph.passes[name].node,
+            **_measured(timed, counted),
+            "subpasses": [
+                {
+                    "name": s.name,
+                    **_measured(
+                        [times[s.name]] if s.name in times else [], [counters[s.name]] if s.name in counters else []
+                    ),
+                }
+                for s in inside
+            ],
+        })  # fmt: skip
+    return records
+
+
+def _measured(times: Sequence[StepTimes], counters: Sequence[StepCounters]) -> dict[str, Any]:
+    device = spread(_sums([step.device_ns for step in times]))
+    return {
+        "ms": device,
+        "submit_ms": spread(_sums([step.submit_ns for step in times])),
+        "process_ms": spread(_sums([step.process_ns for step in times])),
+        "counters": add_counters(counters),
+        "statistics": add_statistics(counters),
+        "gb_per_s": gigabytes_per_second(counters, device["median"]),
+    }
+
+
+def _sums(columns: Sequence[Sequence[int]]) -> list[int]:
+    """The sum of the sub-passes' samples, frame by frame."""
+    return [sum(values) for values in zip(*columns, strict=True)]
+
+
+def device_record(facts: DeviceFacts) -> dict[str, Any]:
+    """Who ran it: what must be equal for times to be compared."""
+    return {
+        "renderer": facts.renderer,
+        "vendor": facts.vendor,
+        "version": facts.version,
+        "driver": driver_version(facts.version),
+        "cpu": _cpu_name(),
+        "threads": thread_count(facts.renderer),
+        "python": platform.python_version(),
+    }
+
+
+def driver_version(version: str) -> str:
+    """The driver's own part of a GL_VERSION string: ``4.5 (Core Profile) Mesa 22.3.6`` is driven by ``Mesa 22.3.6``.
+
+    GL 4.5, 22.2: version number, a space, vendor-specific information.
+    """
+    _, _, own = version.partition(" ")
+    return re.sub(r"^\((?:Core|Compatibility) Profile\) ", "", own) or version
+
+
+def thread_count(renderer: str) -> int:
+    """CPU threads the work may use: those this process is allowed, or what LP_NUM_THREADS tells llvmpipe to rasterise
+    with (0: in the calling thread).
+    """
+    asked = os.environ.get("LP_NUM_THREADS", "")
+    if renderer.lower().startswith("llvmpipe") and asked.isdecimal():
+        return max(1, int(asked))
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _cpu_name() -> str:

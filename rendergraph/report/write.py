@@ -9,8 +9,12 @@ from typing import Any
 
 from rendergraph.document.load import Document
 from rendergraph.document.whole_files import whole_file
+from rendergraph.report.html import TargetGallery, html_page, write_page
+from rendergraph.report.memory_advice import advise
 from rendergraph.report.resources import resources_record
+from rendergraph.report.tables import lifetime_table, timing_table
 from rendergraph.report.timing import timing_record
+from rendergraph.report.trace import write_trace
 from rendergraph.run.image_files import capture_file, write_image
 from rendergraph.run.result import FrameResult
 
@@ -23,9 +27,25 @@ class WrittenResult:
     resources: dict[str, Any]
     files: tuple[Path, ...]
 
+    def _repr_html_(self) -> str:
+        from rendergraph.report.notebook import tables_html
 
-def write_result(result: FrameResult, document: Document, folder: Path) -> WrittenResult:
-    """Write outputs, captures, ``timing.json`` and ``resources.json``. Each file is whole or absent."""
+        return tables_html(timing_table(self.timing), lifetime_table(self.resources))
+
+
+def write_result(
+    result: FrameResult,
+    document: Document,
+    folder: Path,
+    *,
+    page: TargetGallery | None = None,
+    trace: bool = False,
+    full: bool = False,
+) -> WrittenResult:
+    """Write outputs, captures, ``timing.json`` and ``resources.json``, with ``page`` (the targets it shows)
+    ``report.html``, and with ``trace`` ``trace.json``. Each file is whole or absent. ``full``: the graph
+    was not specialised on its scene.
+    """
     files = []
     for name, pixels in result.images.items():
         path = folder / result.files[name]
@@ -36,11 +56,26 @@ def write_result(result: FrameResult, document: Document, folder: Path) -> Writt
         write_image(path, pixels)
         files.append(path)
     timing = timing_record(result, document.model.title)
-    resources = resources_record(result.plan, document.model.title)
+    watched = result.frames - 1 + result.times.warm_up
+    resources = resources_record(
+        result.plan,
+        document.model.title,
+        advice=advise(document, result.plan, full=full),
+        created=(watched, result.steady.objects_created),
+    )
     for stem, record in (("timing", timing), ("resources", resources)):
         path = folder / f"{stem}.json"
         write_json(path, record)
         files.append(path)
+    title = document.model.title or document.path.stem
+    if page is not None:
+        files.append(folder / "report.html")
+        write_page(
+            files[-1], html_page(result.plan, title=title, timing=timing, targets=page, warnings=result.warnings)
+        )
+    if trace:
+        files.append(folder / "trace.json")
+        write_trace(files[-1], result, title)
     return WrittenResult(timing, resources, tuple(files))
 
 

@@ -11,6 +11,7 @@ from rendergraph.device.buffers import Buffer, clear_buffer, copy_buffer, poison
 from rendergraph.device.context import Device
 from rendergraph.device.debug import Scope
 from rendergraph.device.framebuffers import Framebuffer, clear_color, clear_depth, create_framebuffer
+from rendergraph.device.host_copies import buffer_through_host, texture_through_host
 from rendergraph.device.programs import LinkedProgram
 from rendergraph.device.textures import (
     Texture,
@@ -142,8 +143,11 @@ class CommandBuilder:
         match work:
             case Fullscreen():
                 self._draw_arrays("triangles", 3, 1)
-            case DrawArrays(vertices, instances, topology):
-                self._draw_arrays(topology, vertices, instances)
+            case DrawArrays(vertices, instances, topology, separate):
+                if separate:
+                    self._draw_separately(topology, vertices, instances)
+                else:
+                    self._draw_arrays(topology, vertices, instances)
             case DrawIndirect(name, offset, count, topology):
                 buffer = self._buffer(name)
                 self._vertex_array(self._empty_array)
@@ -160,8 +164,9 @@ class CommandBuilder:
                 record.call(gl.glDispatchComputeIndirect, buffer.offset + offset)
             case CopyTexture():
                 self._copy(work)
-            case CopyBuffer(source, destination, count):
-                record.call(copy_buffer, self._device, self._buffer(source), self._buffer(destination), count)
+            case CopyBuffer(source, destination, count, host):
+                copy = buffer_through_host if host else copy_buffer
+                record.call(copy, self._device, self._buffer(source), self._buffer(destination), count)
             case ClearResource(name, value):
                 if isinstance(value, int):
                     record.call(clear_buffer, self._device, self._buffer(name), value)
@@ -177,6 +182,12 @@ class CommandBuilder:
             self._recorder.call(gl.glDrawArrays, mode, 0, vertices)
         else:
             self._recorder.call(gl.glDrawArraysInstanced, mode, 0, vertices, instances)
+
+    def _draw_separately(self, topology: str, vertices: int, instances: int) -> None:
+        self._vertex_array(self._empty_array)
+        gl, mode = self._device.gl, _TOPOLOGY[topology]
+        for instance in range(instances):
+            self._recorder.call(gl.glDrawArraysInstancedBaseInstance, mode, 0, vertices, 1, instance)
 
     def _draw_scene(self, subpass: SubPass, work: DrawScene) -> None:
         geometry, program = self._geometry, subpass.program
@@ -238,7 +249,7 @@ class CommandBuilder:
         source, destination = self._texture(work.source), self._texture(work.destination)
         record, device = self._recorder, self._device
         if not work.blit:
-            record.call(copy_texture, device, source, destination)
+            record.call(texture_through_host if work.host else copy_texture, device, source, destination)
             return
         record.write_all()
         filter_ = enums.LINEAR if work.linear else enums.NEAREST

@@ -40,12 +40,15 @@ COMMAND_BUDGET = 64 * 2**20
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """A run of draw commands with one culling rule: first command and count, within one frame's commands."""
+    """A run of draw commands with one culling rule: first command and count, within one frame's commands, and the
+    triangles (replays included) they draw.
+    """
 
     first: int
     count: int
     double_sided: bool
     mirrored: bool
+    triangles: int
 
 
 class SceneGeometry:
@@ -90,7 +93,9 @@ class SceneGeometry:
                     for run in runs:
                         commands = run.commands.copy()
                         commands["instance_count"] *= replay
-                        batches.append(Batch(first, len(commands), run.double_sided, run.mirrored))
+                        indices = commands["count"].astype(np.int64) * commands["instance_count"]
+                        triangles = int(indices.sum()) // 3
+                        batches.append(Batch(first, len(commands), run.double_sided, run.mirrored, triangles))
                         parts.append(commands)
                         first += len(commands)
                     self.batches[queue, replay] = tuple(batches)

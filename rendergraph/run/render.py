@@ -14,7 +14,7 @@ from rendergraph.plan.plan import PlanOptions
 from rendergraph.run.image_files import capture_file, require_writer
 from rendergraph.run.plan_document import PlannedDocument, plan_document
 from rendergraph.run.result import DeviceFacts, FrameResult, Pixels, RunTimes, SteadyState
-from rendergraph.run.runner import Runner
+from rendergraph.run.runner import Inspect, Runner
 from rendergraph.scene.cameras import orbit
 from rendergraph.scene.scene import Camera
 
@@ -27,7 +27,8 @@ WARM_UP = 1
 @dataclass(frozen=True, slots=True)
 class RenderOptions:
     """How to run a document. ``size``, ``frames`` and ``scene`` replace the file's own; ``samples`` is the number of
-    extra frames timed after the images are taken.
+    extra frames timed after the images are taken. ``inspect`` is called with every texture of
+    one more frame, so that reading them back disturbs no figure.
     """
 
     size: tuple[int, int] | None = None
@@ -35,6 +36,7 @@ class RenderOptions:
     samples: int = 5
     scene: str | None = None
     captures: tuple[str, ...] = ()
+    inspect: Inspect | None = None
     poison: bool = False
     full: bool = False
     check_finite: bool = False
@@ -107,15 +109,30 @@ def run_plan(
         for index in range(count, count + warm_up):
             runner.run_frame(index)
         steady = device.counters - after_first
+        following = count + warm_up
+        if options.inspect is not None:
+            progress("reading targets", 0, 1)
+            runner.run_frame(following, inspect=options.inspect)
+            following += 1
+        counters = runner.count_frame(following) if options.samples else runner.count_plan()
+        following += 1 if options.samples else 0
         clock = choose_clock(device)
-        frames, steps = runner.time_frames(count + warm_up, options.samples, clock, progress)
+        frames, handed, steps = runner.time_frames(following, options.samples, clock, progress)
         return FrameResult(
             plan=plan,
             images=images,
             files=names,
             captures=captures,
             times=RunTimes(
-                planned.plan_ns, planned.scene_ns, runner.compile_ns, runner.upload_ns, first_ns, frames, steps, warm_up
+                planned.plan_ns,
+                planned.scene_ns,
+                runner.compile_ns,
+                runner.upload_ns,
+                first_ns,
+                frames,
+                steps,
+                warm_up,
+                handed,
             ),
             steady=SteadyState(steady.objects_created, steady.programs_compiled, steady.bytes_uploaded),
             device=DeviceFacts(
@@ -123,6 +140,7 @@ def run_plan(
             ),
             frames=count,
             warnings=planned.warnings,
+            counters=counters,
         )
     finally:
         runner.release()

@@ -16,19 +16,43 @@ Pixels = npt.NDArray[Any]
 @dataclass(frozen=True, slots=True)
 class StepTimes:
     """One sub-pass: a sample a timed frame, in nanoseconds. ``device_ns`` by the record's clock; ``submit_ns`` is the
-    time to hand it to the driver; ``process_ns`` the CPU time of all threads meanwhile.
+    time to hand it to the driver; ``process_ns`` the CPU time of all threads meanwhile. ``starts`` and
+    ``submit_starts`` are when the device and the host began, on ``time.perf_counter_ns``'s clock.
     """
 
     name: str
     device_ns: tuple[int, ...]
     submit_ns: tuple[int, ...]
     process_ns: tuple[int, ...]
+    starts: tuple[int, ...] = ()
+    submit_starts: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class StepCounters:
+    """One sub-pass of one frame. ``draws`` counts each of a multi-draw, ``draw_calls`` the calls; ``groups`` are work
+    groups; ``None`` where only the device knows and was not asked. Bytes are those of declared accesses
+    (:mod:`rendergraph.plan.traffic`), ``host_bytes`` of them went through the host. ``statistics`` are the device's own
+    counts (:mod:`rendergraph.device.statistics`), ``None`` where it does not count.
+    """
+
+    name: str
+    draws: int = 0
+    draw_calls: int = 0
+    dispatches: int = 0
+    groups: int | None = 0
+    triangles: int | None = 0
+    bytes_read: int = 0
+    bytes_written: int = 0
+    host_bytes: int = 0
+    statistics: dict[str, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class RunTimes:
     """Times of a run, in nanoseconds. ``frames`` are whole frames with all passes in flight, not serialised by the
-    per-pass clock; ``steps`` are from frames timed pass by pass.
+    per-pass clock, and ``frame_submits`` the part of each until everything was handed over; ``steps`` are from frames
+    timed pass by pass.
     """
 
     plan_ns: int
@@ -39,6 +63,7 @@ class RunTimes:
     frames: tuple[int, ...]
     steps: tuple[StepTimes, ...]
     warm_up: int
+    frame_submits: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,3 +102,14 @@ class FrameResult:
     device: DeviceFacts
     frames: int
     warnings: tuple[Diagnostic, ...] = ()
+    counters: tuple[StepCounters, ...] = ()
+
+    def _repr_html_(self) -> str:
+        from rendergraph.report.notebook import result_html
+
+        return result_html(self)
+
+    def _repr_png_(self) -> bytes | None:
+        from rendergraph.report.notebook import result_png
+
+        return result_png(self)

@@ -15,15 +15,19 @@ from rendergraph.plan.plan import Plan
 from rendergraph.run.allocation import Allocation
 from rendergraph.run.bindings import FRAME_BINDING
 from rendergraph.run.commands import Command, CommandBuilder
+from rendergraph.run.counting import count_command, count_step
 from rendergraph.run.finite import check_finite_writes
 from rendergraph.run.frame_constants import STRIDE, pack_frames
 from rendergraph.run.geometry import SceneGeometry
 from rendergraph.run.readback import read_resource
-from rendergraph.run.result import Pixels, StepTimes
+from rendergraph.run.result import Pixels, StepCounters, StepTimes
 from rendergraph.scene.scene import Camera, Scene
 
 if TYPE_CHECKING:
     from rendergraph.device.clock import Clock
+
+#: Called with a texture's name and pixels.
+Inspect = Callable[[str, Pixels], None]
 
 
 class Runner:
@@ -80,7 +84,7 @@ class Runner:
 
     # ---- frames
 
-    def _commands_of(self, index: int) -> list[Command]:
+    def commands_of(self, index: int) -> list[Command]:
         """Point the frame's constants and draw commands at frame ``index``; its commands."""
         at = min(index, len(self._cameras) - 1)
         self._device.gl.glBindBufferRange(
@@ -90,22 +94,30 @@ class Runner:
             self._geometry.begin_frame(at)
         return self._commands[index % len(self._commands)]
 
-    def run_frame(self, index: int, *, capture: Iterable[str] = (), check_finite: bool = False) -> dict[str, Pixels]:
+    def run_frame(
+        self, index: int, *, capture: Iterable[str] = (), inspect: Inspect | None = None, check_finite: bool = False
+    ) -> dict[str, Pixels]:
         """Run one frame; give back the resources to ``capture``, each read right after the last sub-pass that uses it,
-        before another may take its memory.
+        before another may take its memory. ``inspect`` is called with every texture then, and nothing of it is kept.
 
         :raises RenderGraphError: RG500 for a driver error, RG565 for the first NaN or Inf under ``check_finite``.
         """
         last: dict[int, list[str]] = {}
-        for name in capture:
-            last.setdefault(self._plan.lifetimes[name].last, []).append(name)
+        kept = set(capture)
+        for name, life in self._plan.lifetimes.items():
+            if name in kept or (inspect is not None and self._storage.is_texture(name)):
+                last.setdefault(life.last, []).append(name)
         captured = {}
-        for position, command in enumerate(self._commands_of(index)):
+        for position, command in enumerate(self.commands_of(index)):
             command.run()
             if check_finite:
                 check_finite_writes(self._device, self._plan, command.subpass, self._storage, index)
             for name in last.get(position, ()):
-                captured[name] = self.read(name, index)
+                pixels = self.read(name, index)
+                if name in kept:
+                    captured[name] = pixels
+                if inspect is not None and self._storage.is_texture(name):
+                    inspect(name, pixels)
         self._device.check()
         return captured
 
@@ -113,32 +125,50 @@ class Runner:
         """A resource's content after frame ``index``: ``[height, width, channels]``, first row at the bottom."""
         return read_resource(self._device, self._storage, name, index)
 
+    # ---- counts
+
+    def count_plan(self) -> tuple[StepCounters, ...]:
+        """What the plan alone says of each sub-pass."""
+        return tuple(count_step(self._plan, subpass, self._geometry) for subpass in self._plan.order)
+
+    def count_frame(self, index: int) -> tuple[StepCounters, ...]:
+        """Run one frame with the device counting, sub-pass by sub-pass; never one that is timed."""
+        counters = tuple(
+            count_command(self._device, self._plan, command, self._storage, self._geometry, index)
+            for command in self.commands_of(index)
+        )
+        self._device.check()
+        return counters
+
     # ---- times
 
     def time_frames(
         self, first: int, count: int, clock: Clock, progress: Callable[[str, int, int], None]
-    ) -> tuple[tuple[int, ...], tuple[StepTimes, ...]]:
-        """Run ``count`` whole frames and ``count`` pass by pass under the clock, in turn, from frame ``first`` on.
+    ) -> tuple[tuple[int, ...], tuple[int, ...], tuple[StepTimes, ...]]:
+        """Run ``count`` whole frames and ``count`` pass by pass under the clock, in turn, from frame ``first`` on: times
+        of the whole frames, the part of them until all was handed over, and of the sub-passes.
 
         Nanoseconds. Timing a pass on its own ends its overlap with its neighbours, so both figures are kept.
         """
-        frames, submit, process = [], [], []
+        frames, handed, submit, process, submitted = [], [], [], [], []
         for sample in range(count):
             progress("timing", sample, count)
             self._device.finish()
             start = time.perf_counter_ns()
-            for command in self._commands_of(first + 2 * sample):
+            for command in self.commands_of(first + 2 * sample):
                 command.run()
+            handed.append(time.perf_counter_ns() - start)
             self._device.finish()
             frames.append(time.perf_counter_ns() - start)
             clock.begin_frame()
-            for position, command in enumerate(self._commands_of(first + 2 * sample + 1)):
+            for position, command in enumerate(self.commands_of(first + 2 * sample + 1)):
                 clock.begin(position)
                 command.run()
                 clock.end(position)
             clock.end_frame()
             submit.append(clock.submit_ns)
             process.append(clock.process_ns)
+            submitted.append(clock.submit_starts)
         passes = clock.drain()
         steps = tuple(
             StepTimes(
@@ -146,10 +176,12 @@ class Runner:
                 tuple(times[i] for times in passes),
                 tuple(times[i] for times in submit),
                 tuple(times[i] for times in process),
+                tuple(times[i] for times in clock.starts),
+                tuple(times[i] for times in submitted),
             )
             for i, subpass in enumerate(self._plan.order)
         )
-        return tuple(frames), steps
+        return tuple(frames), tuple(handed), steps
 
     def release(self) -> None:
         """Delete every object this runner made."""

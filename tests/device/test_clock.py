@@ -125,3 +125,25 @@ def test_the_counter_is_wide_enough_to_be_read(device: Device) -> None:
     device.gl.glQueryCounter(query, e.TIMESTAMP)
     assert read_timestamp(device, query) > first > 2**32 or not device.info.is_software
     device.delete_object("glDeleteQueries", query)
+
+
+def test_timestamps_never_wait(device: Device, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A device that is always behind: more frames than the ring holds begin without one result being fetched."""
+    monkeypatch.setattr("rendergraph.device.clock.read_available", lambda device, query: False)
+    fetched: list[int] = []
+    monkeypatch.setattr("rendergraph.device.clock.read_timestamp", lambda device, query: fetched.append(query) or 0)
+    clock = TimestampClock(device, UNPROVEN)
+    for _ in range(3 * RING):
+        clock.begin_frame()
+        clock.begin(0)
+        clock.end(0)
+        assert clock.end_frame() is None
+    assert fetched == []
+    assert len(clock.drain()) == 3 * RING
+    assert len(set(fetched)) == 2 * 3 * RING, "frames in flight share no query"
+    clock.begin_frame()
+    clock.begin(0)
+    assert clock._queries[0] in fetched, "queries are used again once they are read"
+    clock.end(0)
+    clock.end_frame()
+    clock.drain()

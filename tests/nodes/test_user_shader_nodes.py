@@ -190,6 +190,7 @@ def test_draw_against_depth_that_is_read() -> None:
     [
         ({"vertices": 36, "instances": 4}, DrawArrays(36, 4)),
         ({"vertices": 8, "topology": "lines"}, DrawArrays(8, 1, "lines")),
+        ({"vertices": 36, "instances": 4, "separate": True}, DrawArrays(36, 4, separate=True)),
         (
             {"vertices": 3, "tess_control": "a.tesc", "tess_evaluation": "a.tese", "geometry": "a.geom"},
             DrawArrays(3, 1, "patches"),
@@ -219,6 +220,34 @@ def test_copies() -> None:
     assert b.subpasses[1].work == GenerateMips("out_destination")
     b = build("copy", {}, {"source": BUFFER}, {"destination": BUFFER})
     assert b.subpasses[0].work == CopyBuffer("in_source", "out_destination", 64)
+    b = build("copy", {"path": "host"}, {"source": BUFFER}, {"destination": BUFFER})
+    assert b.subpasses[0].work == CopyBuffer("in_source", "out_destination", 64, host=True)
+    b = build("copy", {"path": "host"}, {"source": LAYERS}, {"destination": LAYERS})
+    assert b.subpasses[0].work == CopyTexture("in_source", "out_destination", host=True)
+
+
+@pytest.mark.parametrize(
+    ("source", "destination", "params"),
+    [
+        (COLOR, TextureDesc("rg32f", 64, 32), {}),  # one view class, two formats
+        (COLOR, SMALL, {"blit": True}),
+        (MULTI, MULTI, {}),
+        (STENCIL, STENCIL, {}),
+    ],
+)
+def test_what_does_not_pass_through_the_host(source: Desc, destination: Desc, params: dict[str, Any]) -> None:
+    build("copy", params, {"source": source}, {"destination": destination})
+    with pytest.raises(RenderGraphError) as error:
+        build("copy", {"path": "host", **params}, {"source": source}, {"destination": destination})
+    assert error.value.diagnostics[0].code == "RG225"
+
+
+@pytest.mark.parametrize("params", [{"indirect": "x"}, {"queues": ["opaque"]}, {"vertices": 1, "instances": 70000}])
+def test_what_is_not_drawn_separately(params: dict[str, Any]) -> None:
+    draw = find_node("draw").params_type
+    draw(vertex="a.vert", fragment="a.frag", **params)
+    with pytest.raises(ValueError, match="separate"):
+        draw(vertex="a.vert", fragment="a.frag", separate=True, **params)
 
 
 @pytest.mark.parametrize(

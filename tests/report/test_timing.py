@@ -1,11 +1,15 @@
 """The timing record's arithmetic, on times made up for it."""
 
+from dataclasses import replace
+
+import pytest
+
 from rendergraph.document.load import load_document
 from rendergraph.plan.plan import PlanOptions
 from rendergraph.plan.validate import plan_without_scene
 from rendergraph.report.tables import mebibytes, timing_table
-from rendergraph.report.timing import spread, timing_record
-from rendergraph.run.result import DeviceFacts, FrameResult, RunTimes, SteadyState, StepTimes
+from rendergraph.report.timing import driver_version, spread, thread_count, timing_record
+from rendergraph.run.result import DeviceFacts, FrameResult, RunTimes, SteadyState, StepCounters, StepTimes
 
 
 def result(samples: int) -> FrameResult:
@@ -22,6 +26,7 @@ def result(samples: int) -> FrameResult:
         steady=SteadyState(0, 0, 0),
         device=DeviceFacts("renderer", "vendor", "version", "finish_wall", {"reason": "disagree"}),
         frames=1,
+        counters=tuple(StepCounters(s.name, 1, 1, 0, 0, 2, 300_000, 200_000, 0, {"fragments": 5}) for s in plan.order),
     )
 
 
@@ -64,3 +69,49 @@ def test_bytes_for_people() -> None:
         "1.00 MiB",
         "1.50 MiB",
     ]
+
+
+def test_counters_and_bandwidth_of_a_pass_are_its_subpasses_together() -> None:
+    record = timing_record(result(3))
+    assert record["statistics"]["source"] == "GL_ARB_pipeline_statistics_query"
+    for entry in record["passes"]:
+        count = len(entry["subpasses"])
+        assert entry["counters"]["draws"] == count
+        assert entry["counters"]["bytes_read"] == 300_000 * count
+        assert entry["statistics"] == {"fragments": 5 * count}
+        # 0.5 MB a sub-pass in a median of 2 ms: 0.25 GB/s, however many
+        assert entry["gb_per_s"] == entry["subpasses"][0]["gb_per_s"] == 0.25
+
+
+def test_what_one_subpass_does_not_know_the_pass_does_not_either() -> None:
+    unknown = result(1)
+    first, *others = (replace(step, triangles=None, statistics=None) for step in unknown.counters)
+    known = [replace(step, triangles=2, statistics={"fragments": 5}) for step in others]
+    record = timing_record(replace(unknown, counters=(first, *known)))
+    by_step = {step["name"]: entry for entry in record["passes"] for step in entry["subpasses"]}
+    assert by_step[first.name]["counters"]["triangles"] is None
+    assert by_step[first.name]["statistics"] is None
+    assert by_step[known[-1].name]["counters"]["triangles"] is not None
+
+
+def test_without_samples_there_is_no_bandwidth() -> None:
+    record = timing_record(replace(result(0), counters=()))
+    assert {entry["gb_per_s"] for entry in record["passes"]} == {None}
+    assert record["statistics"]["source"] is None
+
+
+def test_driver_versions() -> None:
+    assert driver_version("4.5 (Core Profile) Mesa 22.3.6") == "Mesa 22.3.6"
+    assert driver_version("4.5.0 NVIDIA 580.159.04") == "NVIDIA 580.159.04"
+    assert driver_version("4.6.14761 Core Profile Context 22.1") == "Core Profile Context 22.1"
+    assert driver_version("odd") == "odd"
+
+
+def test_threads_are_those_that_rasterise(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LP_NUM_THREADS", "7")
+    assert thread_count("llvmpipe (LLVM 15)") == 7
+    assert thread_count("NVIDIA H200") == thread_count("other")
+    monkeypatch.setenv("LP_NUM_THREADS", "0")
+    assert thread_count("llvmpipe (LLVM 15)") == 1
+    monkeypatch.delenv("LP_NUM_THREADS")
+    assert thread_count("llvmpipe (LLVM 15)") == thread_count("other") >= 1

@@ -1,0 +1,177 @@
+"""What ``rg diff`` needs of the records, as pydantic models; what else they hold is passed over.
+
+A record may come from anywhere: everything is checked here, once, and nothing is guessed.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from rendergraph.document.field_types import mistake
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="ignore", strict=True, frozen=True)
+
+
+Milliseconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Samples = list[Milliseconds]
+Count = Annotated[int, Field(ge=0)]
+Size = Annotated[list[Count], Field(min_length=2, max_length=2)]
+
+
+class SampledModel(_Part):
+    """Raw samples, in milliseconds, in order of time."""
+
+    samples: Samples = []
+
+
+class ClockModel(_Part):
+    """The clock the times were read from."""
+
+    name: str
+
+
+class DeviceModel(_Part):
+    """Who ran it."""
+
+    renderer: str
+    version: str = ""
+    driver: str = ""
+    cpu: str = ""
+    threads: int | None = None
+
+
+class PassModel(_Part):
+    """A pass with its times and exact counts; ``None`` for a count that only the device knows."""
+
+    name: str
+    node: str = ""
+    ms: SampledModel = SampledModel()
+    counters: dict[str, Count | None] = {}
+
+
+class ResourceModel(_Part):
+    """A resource, its shape and where it lives."""
+
+    name: str
+    kind: str
+    bytes: Count
+    desc: dict[str, Any]
+    first: str
+    last: str
+    slot: int | None = None
+
+
+class SlotModel(_Part):
+    """Memory that resources share."""
+
+    bytes: Count
+
+
+class HazardModel(_Part):
+    """Why a barrier is there."""
+
+    resource: str
+
+
+class BarrierModel(_Part):
+    """A barrier: ``glMemoryBarrier`` bits before a sub-pass."""
+
+    before: str
+    bits: Count
+    texture_barrier: bool
+    names: list[str] = []
+    hazards: list[HazardModel] = []
+
+
+class ResourcesRecord(_Part):
+    """``resources.json``, schema ``rendergraph.resources/1``."""
+
+    title: str = ""
+    size: Size
+    order: list[str]
+    culled: list[str]
+    totals: dict[str, Any]
+    resources: list[ResourceModel]
+    slots: list[SlotModel]
+    heap_bytes: Count = 0
+    barriers: list[BarrierModel]
+
+    @model_validator(mode="after")
+    def _whole(self) -> ResourcesRecord:
+        for name in TOTALS:
+            total = self.totals.get(name)
+            if isinstance(total, bool) or not isinstance(total, int) or total < 0:
+                raise mistake(f"totals.{name} is {total!r}, not a number of bytes", "write the record again")
+        _refuse_twins([resource.name for resource in self.resources])
+        _refuse_twins(self.order)
+        return self
+
+
+#: The totals of a resources record that are compared, most important first.
+TOTALS = ("used", "load", "placed", "view_pool", "exact_pool", "unshared")
+
+
+class TimingRecord(_Part):
+    """``timing.json``, schema ``rendergraph.timing/1``, and a side of a bench file."""
+
+    title: str = ""
+    clock: ClockModel
+    device: DeviceModel
+    size: Size
+    frame_ms: SampledModel = SampledModel()
+    passes: list[PassModel]
+    steady_state: dict[str, Count] = {}
+    resources: ResourcesRecord | None = None
+
+    @model_validator(mode="after")
+    def _no_twins(self) -> TimingRecord:
+        _refuse_twins([entry.name for entry in self.passes])
+        return self
+
+
+class BlockSideModel(_Part):
+    """Consecutive frames of one side: whole frames, and each pass."""
+
+    frame_ms: Samples = []
+    passes: dict[str, Samples] = {}
+
+
+class BlockModel(_Part):
+    """One block: both sides measured next to each other in one process."""
+
+    process: int
+    A: BlockSideModel
+    B: BlockSideModel | None = None
+
+
+class BenchRecord(_Part):
+    """A bench file, schema ``rendergraph.bench/1``."""
+
+    sides: dict[str, TimingRecord]
+    blocks: list[BlockModel]
+
+    @model_validator(mode="after")
+    def _sides_fit(self) -> BenchRecord:
+        if set(self.sides) not in ({"A"}, {"A", "B"}):
+            raise mistake(f"sides are {sorted(self.sides)}, not A, or A and B", "write the record again")
+        for number, block in enumerate(self.blocks):
+            if (block.B is not None) != ("B" in self.sides):
+                raise mistake(f"block {number} does not have the sides of the file", "write the record again")
+            for name in self.sides:
+                side: BlockSideModel = getattr(block, name)
+                strangers = set(side.passes) - {entry.name for entry in self.sides[name].passes}
+                if strangers:
+                    raise mistake(f"block {number} times '{min(strangers)}', no pass of side {name}", "measure again")
+        return self
+
+
+def _refuse_twins(names: list[str]) -> None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            raise mistake(f"'{name}' is there twice", "write the record again")
+        seen.add(name)

@@ -1,0 +1,113 @@
+"""The shape of ``timing.json``; :mod:`rendergraph.report.timing` makes one."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from rendergraph.report.record_shape import Bytes, Count, Head, Milliseconds, Part
+
+
+class SpreadRecord(Part):
+    """Raw samples in order of time, and their median and extremes: null where nothing was timed."""
+
+    median: Milliseconds | None
+    min: Milliseconds | None
+    max: Milliseconds | None
+    samples: list[Milliseconds]
+
+
+class ClockRecord(Part):
+    """The clock the times are from, and the proof it was chosen by."""
+
+    name: Literal["gpu_timestamp", "finish_wall"]
+    proof: dict[str, Any]
+
+
+class DeviceRecord(Part):
+    """Who ran it: what must be equal for times to be compared."""
+
+    renderer: str
+    vendor: str
+    version: str = Field(description="The GL_VERSION string.")
+    driver: str = Field(description="The driver's own part of it.")
+    cpu: str
+    threads: Annotated[int, Field(ge=1)]
+    python: str
+
+
+class OnceRecord(Part):
+    """What happens once, before the steady state."""
+
+    plan: Milliseconds
+    scene: Milliseconds
+    compile: Milliseconds
+    upload: Milliseconds
+    first_frame: Milliseconds
+
+
+class CountersRecord(Part):
+    """What was asked of the device in a frame: exact. null where only the device knows and was not asked."""
+
+    draws: Count | None = Field(description="Each of a multi-draw.")
+    draw_calls: Count | None
+    dispatches: Count | None
+    groups: Count | None = Field(description="Work groups.")
+    triangles: Count | None
+    bytes_read: Bytes | None = Field(description="By declared accesses, each part once.")
+    bytes_written: Bytes | None
+    host_bytes: Bytes | None = Field(description="Of them, those copied through the host.")
+
+
+class _Measured(Part):
+    name: str
+    ms: SpreadRecord = Field(description="By the record's clock.")
+    submit_ms: SpreadRecord = Field(description="To hand it to the driver.")
+    process_ms: SpreadRecord = Field(description="CPU time of all threads meanwhile.")
+    counters: CountersRecord
+    statistics: dict[str, Count] | None = Field(description="What the device counted; null where it does not.")
+    gb_per_s: float | None = Field(ge=0, description="Declared bytes over the median time, in 10^9 bytes a second.")
+
+
+class StepRecord(_Measured):
+    """A sub-pass."""
+
+
+class PassRecord(_Measured):
+    """A pass: the sum of its sub-passes, frame by frame."""
+
+    node: str
+    subpasses: Annotated[list[StepRecord], Field(min_length=1)]
+
+
+class StatisticsRecord(Part):
+    """Where the passes' statistics come from, and what to beware of."""
+
+    source: str | None
+    note: str
+
+
+class SteadyRecord(Part):
+    """What the frames after the first created: all zero, or something is wrong."""
+
+    objects_created: Count
+    programs_compiled: Count
+    bytes_uploaded: Bytes
+
+
+class TimingRecord(Head):
+    """The times of a run, with their clock, renderer and raw samples."""
+
+    version: Literal["rendergraph.timing/1"] = Field(alias="schema")
+    clock: ClockRecord
+    device: DeviceRecord
+    frames: Count = Field(description="Frames rendered.")
+    warm_up_frames: Count
+    timed_frames: Count
+    once_ms: OnceRecord
+    frame_ms: SpreadRecord = Field(description="Whole frames, passes overlapping as they can.")
+    frame_submit_ms: SpreadRecord = Field(description="The part of each until everything was handed over.")
+    statistics: StatisticsRecord
+    passes: list[PassRecord] = Field(description="In execution order.")
+    steady_state: SteadyRecord

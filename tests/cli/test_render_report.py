@@ -1,0 +1,37 @@
+"""`rg render --html --trace`: what is written, and what is not disturbed."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Rg
+
+
+@pytest.mark.gpu
+def test_render_writes_page_and_trace(rg: Rg, tmp_path: Path) -> None:
+    outcome = rg("render", "tonemap", "--size", "64x36", "--samples", "2", "--html", "--trace", "-o", str(tmp_path))
+    assert outcome.code == 0, outcome.err
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert all(f'id="{name}"' in page for name in ("target-chart", "target-aces", "target-reinhard", "pass-paint"))
+    assert (tmp_path / "trace.json").stat().st_size > 1000
+    assert not (tmp_path / "chart.png").exists(), "what the page shows is not a capture the user asked for"
+
+
+@pytest.mark.gpu
+def test_looking_at_targets_changes_no_count(rg: Rg, tmp_path: Path) -> None:
+    counts = []
+    for option in ([], ["--html"]):
+        outcome = rg(
+            "render", "compute", "--size", "64x36", "--samples", "1", "--format", "json", "-o", str(tmp_path), *option
+        )
+        assert outcome.code == 0, outcome.err
+        counts.append(json.loads(outcome.out)["timing"]["steady_state"])
+    assert counts[0] == counts[1] == dict.fromkeys(counts[0], 0)
+
+
+def test_a_trace_without_samples_is_refused_before_rendering(rg: Rg, tmp_path: Path) -> None:
+    outcome = rg("render", "tonemap", "--trace", "--samples", "0", "-o", str(tmp_path))
+    assert outcome.code == 2
+    assert "RG569" in outcome.err
+    assert not list(tmp_path.iterdir())
