@@ -14,7 +14,7 @@ from rendergraph.plan.graph import Position
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One row of the table: ``text`` and ``help`` are ``str.format`` templates, ``explain`` is added by ``rg explain``."""
+    """One row of the table: ``text`` and ``help`` are ``str.format`` templates; ``rg explain`` adds ``explain``."""
 
     severity: str  # "error" | "warning" | "note"
     text: str
@@ -514,7 +514,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "missing barrier: '{before}' uses '{resource}' after '{after}', with no {kind} barrier between them",
         "add `- {{resource: {resource}, after: {after}, before: {before}, kind: {kind}}}` to barriers:, or remove the "
         "section to have all barriers derived",
-        "One of the two accesses is a shader store or atomic, which OpenGL does not order by itself (4.5 core, 7.13.2). "
+        "One of the two accesses is a shader store or atomic, which OpenGL does not order by itself (4.5 "
+        "core, 7.13.2). "
         "The kind names how the resource is used next.",
     ),
     "RG402": Message(
@@ -538,8 +539,10 @@ MESSAGES: Final[dict[str, Message]] = {
     "RG500": Message(
         "error",
         "OpenGL refused a call{where}{what}: {detail}",
-        "this is a mistake in the pass's sizes, formats or bindings, or in the tool; run `rg plan` to see what it binds",
-        "Raised when the driver reports an error while a pass runs. It names the pass, the resource where one is known, "
+        "this is a mistake in the pass's sizes, formats or bindings, or in the tool; run `rg plan` to see "
+        "what it binds",
+        "Raised when the driver reports an error while a pass runs. It names the pass, the resource where "
+        "one is known, "
         "and the line of the graph that asked for the pass.",
     ),
     "RG501": Message(
@@ -637,7 +640,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "no resource '{name}' to capture",
         "capture one of {known}",
-        "Only resources that a pass of the finished plan touches can be captured. A culled pass writes nothing: run with "
+        "Only resources that a pass of the finished plan touches can be captured. A culled pass writes "
+        "nothing: run with "
         "--no-cull to keep it.",
     ),
     "RG565": Message(
@@ -673,7 +677,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "{where}: not a glTF 2.0 file: {reason}",
         "export the scene again as glTF 2.0, .glb or .gltf",
-        "A .glb file is a 12-byte header ('glTF', version 2, length) and chunks, the first of them JSON; a .gltf file is "
+        "A .glb file is a 12-byte header ('glTF', version 2, length) and chunks, the first of them JSON; a "
+        ".gltf file is "
         "UTF-8 JSON. A file cut short by a failed download or copy fails here.",
     ),
     "RG603": Message("error", "{where}: invalid JSON: {reason}", "repair the file, or export the scene again"),

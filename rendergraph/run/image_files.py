@@ -100,7 +100,10 @@ def _write_exr(path: Path, pixels: Pixels) -> None:
         named = {"RGBA"[i]: np.ascontiguousarray(kept[..., i]) for i in range(channels)}
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with OpenEXR.File(header, named) as file:
-        file.write(str(path))
+        try:
+            file.write(str(path))
+        except RuntimeError as error:  # the reason stands behind the quoted file name
+            raise OSError(str(error).rpartition('"')[2].strip(" .")) from None
 
 
 def read_image(path: Path) -> Pixels:

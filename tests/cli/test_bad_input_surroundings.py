@@ -183,7 +183,7 @@ def test_exr_without_its_library_is_refused_before_rendering(
     graph = write_graph(tmp_path, shader="this would not compile", passes=PAINT, outputs="{a: {file: a.EXR}}")
     out = tmp_path / "out"
     outcome = rg("render", str(graph), "-o", str(out))
-    assert_refused(outcome, 3, "RG562", "a.EXR", "graph.yaml:8:", "pip install 'rendergraph[exr]'", folder=out)
+    assert_refused(outcome, 3, "RG562", "a.EXR", "graph.yaml:7:", "pip install 'rendergraph[exr]'", folder=out)
 
 
 # ---------------------------------------------------------------- streams
@@ -294,4 +294,3 @@ def test_an_output_folder_whose_name_is_not_utf_8(tmp_path: Path) -> None:
     outcome = run_rg(["render", write_graph(tmp_path), "-o", out, "--samples", "0"])
     assert outcome.code == 0, outcome.err
     assert sorted(os.listdir(out)) == [b"image.png", b"resources.json", b"timing.json"]
-
