@@ -662,6 +662,13 @@ MESSAGES: Final[dict[str, Message]] = {
         "the capture of '{name}' and the output '{output}' would both write {file}",
         "give the output another file, as --set outputs.{output}.file=final.png",
     ),
+    "RG569": Message(
+        "error",
+        "pass '{subpass}' draws into '{resource}', but its shader has no output at location {location}",
+        "declare it, as layout(location = {location}) out vec4 o_color; colours under write: are numbered in their order",
+        "OpenGL leaves a colour target without an output undefined. An output that is declared but never assigned is "
+        "removed by the compiler.",
+    ),
     "RG570": Message("error", "there is no node '{name}'", "{hint}"),
     "RG571": Message("error", "{path} exists already", "choose another name, or remove it first"),
     "RG572": Message(

@@ -20,6 +20,7 @@ from rendergraph.device.textures import (
     poison_texture,
 )
 from rendergraph.document.formats import FORMATS
+from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.plan.graph import (
     Access,
     ClearResource,
@@ -136,6 +137,7 @@ class CommandBuilder:
         if subpass.program is not None:
             program = self._programs[subpass.name]
             if not subpass.program.is_compute:
+                _require_outputs(subpass, program)
                 self._targets(subpass)
             record.set("program", program.glo, gl.glUseProgram, program.glo)
             self._bindings.bind(subpass, program)
@@ -260,3 +262,14 @@ class CommandBuilder:
                 made = create_framebuffer(self._device, [(texture, 0, at)], None, texture.label)
             self._framebuffers[key] = made
         return self._framebuffers[key]
+
+
+def _require_outputs(subpass: SubPass, program: LinkedProgram) -> None:
+    """Raise RenderGraphError RG569 for a colour target the shader has no output for: GL would leave it undefined."""
+    colors = [a.resource for a in subpass.accesses if a.usage is Usage.COLOR]
+    written = set(program.interface.outputs.values())
+    for location, resource in enumerate(colors):
+        if location not in written and subpass.state.color_mask:
+            raise RenderGraphError([
+                diagnose("RG569", subpass.position, subpass=subpass.name, resource=resource, location=location)
+            ])  # fmt: skip

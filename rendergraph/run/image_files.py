@@ -5,6 +5,7 @@ Arrays are ``[height, width, channels]`` with the first row at the bottom, as Op
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -117,8 +118,10 @@ def read_image(path: Path) -> Pixels:
         from PIL import Image, UnidentifiedImageError
 
         try:
-            with Image.open(path) as image:
-                pixels = np.asarray(image.convert("RGBA"))
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # a texture's limit was checked before
+                with Image.open(path) as image:
+                    pixels = np.asarray(image.convert("RGBA"))
         except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
             raise RenderGraphError([diagnose("RG563", path=str(path), reason=str(error))], 2) from None
     return np.ascontiguousarray(pixels[::-1])

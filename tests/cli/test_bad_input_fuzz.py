@@ -1,4 +1,4 @@
-"""Shipped graphs with something changed: whatever it is, the command line answers with an exit code, never a traceback."""
+"""Shipped graphs with something changed: the command line answers with an exit code, never a traceback."""
 
 import random
 import shutil
