@@ -665,7 +665,7 @@ MESSAGES: Final[dict[str, Message]] = {
     "RG569": Message(
         "error",
         "pass '{subpass}' draws into '{resource}', but its shader has no output at location {location}",
-        "declare it, as layout(location = {location}) out vec4 o_color; colours under write: are numbered in their order",
+        "declare it: layout(location = {location}) out vec4 o_color; colours under write: are numbered in order",
         "OpenGL leaves a colour target without an output undefined. An output that is declared but never assigned is "
         "removed by the compiler.",
     ),

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Rg
-from tests.cli.refusal import PAINT, SHADER, SHOW, assert_refused, write_graph
+from tests.cli.refusal import PAINT, SHADER, SHOW, A, assert_refused, write_graph
 
 pytestmark = pytest.mark.gpu
 
@@ -80,6 +80,19 @@ def test_what_is_not_finite_is_found(rg: Rg, tmp_path: Path, bits: str, value: s
     assert_refused(outcome, 1, "RG565", "'paint.", "'a'", "(3, 2)", value, "graph.yaml:6:3")
     assert not out.exists()
     assert rg("render", graph, "-o", str(out), "--samples", "0").code == 0  # without the check it is not an error
+
+
+def test_an_array_of_outputs_has_a_location_for_each(rg: Rg, tmp_path: Path) -> None:
+    text = HEAD + "out vec4 o_all[2];\nvoid main() { o_all[0] = vec4(1.0); o_all[1] = vec4(0.5); }\n"
+    graph = write_graph(
+        tmp_path,
+        resources=A + A.replace("a:", "b:"),
+        passes=PAINT.replace("o_color: a", "one: a, two: b"),
+        outputs="{a: {file: a.png}, b: {file: b.png}}",
+        shader=text,
+    )
+    outcome = rg("render", str(graph), "-o", str(tmp_path / "out"), "--samples", "0")
+    assert outcome.code == 0, outcome.err
 
 
 def test_nothing_of_an_earlier_run_is_touched(rg: Rg, tmp_path: Path) -> None:
