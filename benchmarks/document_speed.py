@@ -2,8 +2,8 @@
 
     python benchmarks/document_speed.py
 
-A chain of full-screen passes with side inputs. The smallest of several repeats, interleaved; the last column is what the
-project promises: planning, expansion included, in at most twice the loader's time at 1,000 passes.
+A chain of full-screen passes with side inputs. The smallest of several repeats, interleaved; the last column is what
+the project promises: planning, expansion included, in at most twice the loader's time at 1,000 passes.
 """
 
 from __future__ import annotations

@@ -572,9 +572,7 @@ MESSAGES: Final[dict[str, Message]] = {
         "device {index} was asked for, but device {open} is already open in this process",
         "close it first, or use another process: one OpenGL context per process",
     ),
-    "RG510": Message(
-        "error", "shader file {file} cannot be read: {detail}", "{hint}"
-    ),
+    "RG510": Message("error", "shader file {file} cannot be read: {detail}", "{hint}"),
     "RG511": Message(
         "error",
         "#include {name} is not found{chain}",

@@ -74,18 +74,22 @@ def display_pixels(pixels: Pixels) -> npt.NDArray[np.uint8]:
     return out
 
 
+def picture(pixels: Pixels) -> npt.NDArray[np.uint8]:
+    """Any pixels as ``uint8[height, width, 3]`` for looking at: grey for one channel, red and green for two."""
+    shown = display_pixels(pixels)
+    if shown.shape[-1] == 1:
+        return np.repeat(shown, 3, axis=-1)
+    if shown.shape[-1] == 2:
+        return np.concatenate([shown, np.zeros_like(shown[..., :1])], axis=-1)
+    return shown[..., :3]  # alpha of a finished frame means nothing to a viewer
+
+
 def _write_png(path: Path, pixels: Pixels) -> None:
     from PIL import Image
 
-    shown = display_pixels(pixels)
-    channels = shown.shape[-1]
-    if channels == 1:
-        image = Image.fromarray(shown[..., 0])
-    elif channels == 2:  # two channels have no PNG form of their own: red and green
-        image = Image.fromarray(np.concatenate([shown, np.zeros_like(shown[..., :1])], axis=-1))
-    else:
-        image = Image.fromarray(shown[..., :3])  # alpha of a finished frame means nothing to a viewer
-    image.save(path, compress_level=1)
+    shown = picture(pixels)
+    grey = pixels.shape[-1] == 1
+    Image.fromarray(np.ascontiguousarray(shown[..., 0] if grey else shown)).save(path, compress_level=1)
 
 
 def _write_exr(path: Path, pixels: Pixels) -> None:
