@@ -212,6 +212,7 @@ SIGNATURES: Final[dict[str, str]] = {
     "glPushDebugGroup": "v uuis",
     "glPopDebugGroup": "v",
     "glObjectLabel": "v uuis",
+    "glGetObjectLabel": "v uuipp",
 }  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from rendergraph.document.load import Document
 from rendergraph.document.whole_files import whole_file
 from rendergraph.report.resources import resources_record
 from rendergraph.report.timing import timing_record
-from rendergraph.run.image_files import capture_file, write_image
+from rendergraph.run.image_files import write_capture, write_image
 from rendergraph.run.result import FrameResult
 
 
@@ -32,9 +32,7 @@ def write_result(result: FrameResult, document: Document, folder: Path) -> Writt
         write_image(path, pixels)
         files.append(path)
     for name, pixels in result.captures.items():
-        path = folder / capture_file(name)
-        write_image(path, pixels)
-        files.append(path)
+        files += write_capture(folder, result.plan.graph.resources[name], pixels)
     timing = timing_record(result, document.model.title)
     resources = resources_record(result.plan, document.model.title)
     for stem, record in (("timing", timing), ("resources", resources)):

@@ -246,7 +246,9 @@ class CommandBuilder:
         filter_ = enums.LINEAR if work.linear else enums.NEAREST
         for layer in range(min(source.desc.layers, destination.desc.layers)):
             at = [self._read_target(t, layer) for t in (source, destination)]
-            mask = enums.DEPTH_BUFFER_BIT if FORMATS[source.desc.format].depth else enums.COLOR_BUFFER_BIT
+            format_ = FORMATS[source.desc.format]
+            mask = enums.DEPTH_BUFFER_BIT if format_.depth else enums.COLOR_BUFFER_BIT
+            mask |= enums.STENCIL_BUFFER_BIT if format_.stencil else 0
             record.call(
                 device.gl.glBlitNamedFramebuffer, at[0].glo, at[1].glo,
                 0, 0, at[0].width, at[0].height, 0, 0, at[1].width, at[1].height, mask, filter_,

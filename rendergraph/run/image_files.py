@@ -5,6 +5,7 @@ Arrays are ``[height, width, channels]`` with the first row at the bottom, as Op
 
 from __future__ import annotations
 
+import importlib.util
 import warnings
 from pathlib import Path
 from typing import Any
@@ -12,10 +13,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from rendergraph.document.formats import FORMATS, Channel
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.document.output_files import IMAGE_SUFFIXES
 from rendergraph.document.whole_files import whole_file
-from rendergraph.plan.graph import Position
+from rendergraph.plan.graph import BufferDesc, Position, Resource
 
 Pixels = npt.NDArray[Any]
 
@@ -41,9 +43,41 @@ def write_image(path: Path, pixels: Pixels) -> None:
             _write_exr(temporary, top_down)
 
 
-def capture_file(resource: str) -> str:
-    """The file a captured resource is saved as, inside the output folder."""
-    return f"{resource}.png"
+def capture_files(resource: Resource) -> tuple[str, ...]:
+    """The files a captured resource is saved as, inside the output folder.
+
+    A texture is a .png to look at, and where that loses values also an .exr (float and depth formats, when the OpenEXR
+    library is there) or .npy; a buffer is a .npy of its 32-bit words, ``float32[1, words]`` (``view(np.uint32)`` for
+    integers).
+    """
+    if isinstance(resource.desc, BufferDesc):
+        return (f"{resource.name}.npy",)
+    kind = FORMATS[resource.desc.format]
+    if kind.channel is Channel.UNORM and kind.texel_bytes == kind.channels:
+        return (f"{resource.name}.png",)
+    real = kind.channel in (Channel.FLOAT, Channel.DEPTH)
+    return f"{resource.name}.png", f"{resource.name}{'.exr' if real and _has_openexr() else '.npy'}"
+
+
+def write_capture(folder: Path, resource: Resource, pixels: Pixels) -> list[Path]:
+    """Write a captured resource as its :func:`capture_files`; the paths.
+
+    The picture of a depth texture is stretched from its least to its greatest value: depth is seldom spread out.
+    """
+    paths = [folder / file for file in capture_files(resource)]
+    for path in paths:
+        shown = pixels
+        if isinstance(resource.desc, BufferDesc):
+            shown = pixels[..., 0]  # float32[1, words]
+        elif path.suffix == ".png" and FORMATS[resource.desc.format].depth:
+            low, high = float(pixels.min()), float(pixels.max())
+            shown = (255.0 * (pixels - low) / max(high - low, 1e-30) + 0.5).astype(np.uint8)
+        write_image(path, shown)
+    return paths
+
+
+def _has_openexr() -> bool:
+    return importlib.util.find_spec("OpenEXR") is not None
 
 
 def require_writer(file: str, position: Position | None = None) -> None:
@@ -56,12 +90,12 @@ def require_writer(file: str, position: Position | None = None) -> None:
 
 
 def display_pixels(pixels: Pixels) -> npt.NDArray[np.uint8]:
-    """Any pixels as uint8 for display: integers stretched to their range, floats encoded sRGB, NaN magenta."""
+    """Any pixels as uint8 for display: integers by their type's range, floats encoded sRGB, NaN magenta."""
     if pixels.dtype == np.uint8:
         return pixels
     if np.issubdtype(pixels.dtype, np.integer):
-        high = max(1, int(pixels.max(initial=0)))
-        return (pixels.astype(np.float64) * (255.0 / high)).astype(np.uint8)
+        scaled = pixels.astype(np.float64) * (255.0 / np.iinfo(pixels.dtype).max)
+        return (np.maximum(scaled, 0.0) + 0.5).astype(np.uint8)
     values = pixels.astype(np.float32)
     bad = np.isnan(values).any(axis=-1)
     values = np.clip(np.nan_to_num(values, nan=0.0, posinf=1.0, neginf=0.0), 0.0, 1.0)
