@@ -20,11 +20,12 @@ def nodes(
     format: FormatOption = Format.TEXT,
 ) -> None:
     """List the nodes, or show one with its ports and parameters."""
-    from rendergraph.cli.console import write_json, write_table
+    from rendergraph.cli.console import report, write_json, write_table
     from rendergraph.node.catalogue import describe_node, describe_nodes
     from rendergraph.report.node_tables import node_page, node_table
 
-    described = [describe_node(name)] if name else describe_nodes()
+    described, broken = ([describe_node(name)], []) if name else describe_nodes()
+    report(broken)
     if format is Format.JSON:
         write_json(described)
     else:

@@ -15,12 +15,12 @@ from rendergraph.cli.options import (
     GraphArgument,
     NoAliasOption,
     NoCullOption,
+    Order,
     OrderOption,
     SceneOption,
     SeedOption,
     SetOption,
     SizeOption,
-    parse_order,
     parse_size,
 )
 
@@ -43,7 +43,12 @@ def render(
         int, typer.Option("--samples", min=0, max=1000, help="Extra frames timed after the last one.")
     ] = 5,
     capture: Annotated[
-        list[str] | None, typer.Option("--capture", metavar="RESOURCE", help="Save this target too (repeatable).")
+        list[str] | None,
+        typer.Option(
+            "--capture",
+            metavar="RESOURCE",
+            help="Save this target too: .png, and its exact values as .exr or .npy (repeatable).",
+        ),
     ] = None,
     html: Annotated[bool, typer.Option("--html", help="Write report.html too: graph, times, memory, targets.")] = False,
     trace: Annotated[bool, typer.Option("--trace", help="Write trace.json too, for Perfetto.")] = False,
@@ -52,9 +57,9 @@ def render(
     no_cull: NoCullOption = False,
     full: FullOption = False,
     check_finite: Annotated[
-        bool, typer.Option("--check-finite", help="Stop at the first NaN or Inf a pass writes.")
+        bool, typer.Option("--check-finite", help="Stop at the first NaN or Inf a pass writes into a float texture.")
     ] = False,
-    order: OrderOption = "default",
+    order: OrderOption = Order.DEFAULT,
     order_seed: SeedOption = 0,
     device: Annotated[
         int | None, typer.Option("--device", min=0, help="EGL device index; `rg doctor` lists them.")
@@ -89,7 +94,7 @@ def render(
         full=full,
         check_finite=check_finite,
         device=device,
-        plan=PlanOptions(alias=not no_alias, cull=not no_cull, order=parse_order(order), seed=order_seed),
+        plan=PlanOptions(alias=not no_alias, cull=not no_cull, order=order.value, seed=order_seed),
     )
     with progress_bar() as progress:
         result = render_document(document, options, progress)

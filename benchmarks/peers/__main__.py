@@ -1,6 +1,6 @@
 """The fireplace room with one sun and 16 point lights: this project against pyrender and pygfx, in turn, in one run.
 
-    python -m benchmarks.peers [--assets DIR] [--blocks N] [--only plain|shadowed]
+    python -m benchmarks.peers [--assets DIR] [--blocks N] [--only plain|shadowed|default]
 
 Installs the two peers apart, under build/peers, on the first run. The room is `fireplace_room/fireplace_room.glb` in
 ``--assets``, else in $RG_ASSETS, else in ../shared/assets beside the repository; without it nothing is measured.
@@ -16,7 +16,8 @@ import sys
 from pathlib import Path
 from statistics import median, quantiles
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # workers and this process share modules, not environments
+# Workers run as scripts of this folder, in environments without rendergraph; this process shares their modules.
+sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from contender import Contender
 from environment import BUILD, HERE, REPOSITORY, environment, interpreter, lavapipe
@@ -31,15 +32,22 @@ SIZE = (640, 360)
 LIGHTS = PointsModel(count=16, seed=3, intensity=1.0)
 WARM_UP = 3  # frames: shaders are compiled on the first, and variants of them on the next
 
-#: Features, then each contender's worker and arguments. plain: one sample a pixel, no shadow, no sky, no filter on any
-#: side. shadowed: the sun's shadow, and what else each does by itself.
+#: Round, then each contender's worker and arguments; this project's first is what the ratios are of.
+#: plain: one sample a pixel, no shadow, no sky, no filter, on any side. shadowed: the same with the sun's shadow from
+#: one map. default: each as it comes, with the sun's shadow.
 ROUNDS = {
     "plain": {
-        "rendergraph": ["rendergraph_worker.py", str(HERE / "forward.yaml")],
+        "rendergraph": ["rendergraph_worker.py", str(HERE / "plain.yaml")],
+        "rendergraph_forward": ["rendergraph_worker.py", str(HERE / "forward.yaml")],
         "pyrender": ["pyrender_worker.py", "samples=1"],
         "pygfx": ["pygfx_worker.py", "scale=1", "ppaa=none"],
     },
     "shadowed": {
+        "rendergraph": ["rendergraph_worker.py", str(HERE / "shadowed.yaml")],
+        "pyrender": ["pyrender_worker.py", "shadow", "samples=1"],
+        "pygfx": ["pygfx_worker.py", "shadow", "scale=1", "ppaa=none"],
+    },
+    "default": {
         "rendergraph": ["rendergraph_worker.py", "deferred_shading"],
         "pyrender": ["pyrender_worker.py", "shadow"],
         "pygfx": ["pygfx_worker.py", "shadow"],
@@ -68,7 +76,7 @@ def start(features: str) -> list[Contender]:
     """The contenders of one round, this project first."""
     contenders = []
     for name, arguments in ROUNDS[features].items():
-        python = sys.executable if name == "rendergraph" else interpreter(name)
+        python = sys.executable if name.startswith("rendergraph") else interpreter(name)
         variables = environment(**lavapipe()) if name == "pygfx" else environment()
         log = RESULTS / f"{features}_{name}.log"
         contenders.append(Contender.start(name, features, python, arguments, variables, log))
@@ -113,7 +121,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.peers", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--assets", type=Path, default=None, help="folder that holds fireplace_room/")
     parser.add_argument("--blocks", type=int, default=21, help="frames of each contender, at least 15 (default 21)")
-    parser.add_argument("--only", choices=sorted(ROUNDS), help="one of the two comparisons")
+    parser.add_argument("--only", choices=sorted(ROUNDS), help="one of the three rounds")
     arguments = parser.parse_args()
     if arguments.blocks < 15:
         parser.error("--blocks: fewer than 15 tell too little")

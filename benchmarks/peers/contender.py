@@ -65,7 +65,8 @@ class Contender:
             self.worker.kill()
 
     def _ask(self, line: str) -> dict[str, Any]:
-        assert self.worker.stdin is not None and self.worker.stdout is not None
+        assert self.worker.stdin is not None
+        assert self.worker.stdout is not None
         try:
             print(line, file=self.worker.stdin, flush=True)
             reply = self.worker.stdout.readline()

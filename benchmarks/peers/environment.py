@@ -24,7 +24,7 @@ def interpreter(peer: str) -> Path:
         print(f"installing {peer} into {folder.relative_to(REPOSITORY)} ...", file=sys.stderr)
         shutil.rmtree(folder, ignore_errors=True)
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-        pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        pip = [python, "-m", "pip", "install", "--quiet", "--quiet", "--disable-pip-version-check"]
         subprocess.run([*pip, "-r", wanted], check=True)
         if peer in UNCHECKED:
             subprocess.run([*pip, "--no-deps", UNCHECKED[peer]], check=True)

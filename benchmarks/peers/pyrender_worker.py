@@ -1,7 +1,8 @@
 """pyrender's worker: `pyrender_worker.py [shadow] [samples=N]`.
 
-Two things of pyrender are replaced. It lights by the four nearest point lights; here by all. Its read-back always
-fetches colour and depth and turns depth into metres; here colour alone, as the other two read it.
+Three things of pyrender are replaced, two of them in its favour. It lights by the four nearest point lights; here by
+all. Its read-back always fetches colour and depth and turns depth into metres; here colour alone, as the other two read
+it. It draws into four samples a pixel; `samples` tells otherwise.
 """
 
 from __future__ import annotations
@@ -15,18 +16,16 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-
-if not hasattr(np, "infty"):
-    np.infty = np.inf
 import OpenGL
 import OpenGL.EGL  # PyOpenGL 3.1.10 cannot import this with its checks off
 
 OpenGL.ERROR_CHECKING = False  # a glGetError after every call would count against it
+# ruff: noqa: E402
 
 import pyrender
 import pyrender.renderer as internals
 import trimesh
-from OpenGL import GL as gl
+from OpenGL import GL
 from pyrender.constants import RenderFlags
 from serve import serve
 from shot import Shot, look_at, strength
@@ -68,17 +67,17 @@ class Pyrender:
         self.draw()
         self.about: dict[str, Any] = {
             "version": version("pyrender"),
-            "device": " ".join(gl.glGetString(name).decode() for name in (gl.GL_RENDERER, gl.GL_VERSION)),
+            "device": " ".join(GL.glGetString(name).decode() for name in (GL.GL_RENDERER, GL.GL_VERSION)),
             "samples": samples,
         }
 
     def _resolve(self, renderer: internals.Renderer) -> None:
         width, height = self.size
-        gl.glBindFramebuffer(gl.GL_READ_FRAMEBUFFER, renderer._main_fb_ms)
-        gl.glBindFramebuffer(gl.GL_DRAW_FRAMEBUFFER, renderer._main_fb)
-        gl.glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.GL_COLOR_BUFFER_BIT, gl.GL_NEAREST)
-        gl.glBindFramebuffer(gl.GL_READ_FRAMEBUFFER, renderer._main_fb)
-        gl.glFinish()
+        GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, renderer._main_fb_ms)
+        GL.glBindFramebuffer(GL.GL_DRAW_FRAMEBUFFER, renderer._main_fb)
+        GL.glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL.GL_COLOR_BUFFER_BIT, GL.GL_NEAREST)
+        GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, renderer._main_fb)
+        GL.glFinish()
 
     def draw(self) -> None:
         """See :class:`serve.Renderer`."""
@@ -89,7 +88,7 @@ class Pyrender:
     def read(self) -> npt.NDArray[np.uint8]:
         """See :class:`serve.Renderer`."""
         width, height = self.size
-        pixels = gl.glReadPixels(0, 0, width, height, gl.GL_RGBA, gl.GL_UNSIGNED_BYTE)
+        pixels = GL.glReadPixels(0, 0, width, height, GL.GL_RGBA, GL.GL_UNSIGNED_BYTE)
         return np.frombuffer(pixels, np.uint8).reshape(height, width, 4)
 
 

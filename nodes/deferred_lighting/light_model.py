@@ -27,11 +27,13 @@ def light_model(b: Builder, step: str, shadow_taps: int) -> tuple[dict[str, int]
         raise RenderGraphError([diagnose("RG225", b.position, name=b.pass_name, problem=problem, hint=hint)])
     sun = b.requires("sun", step)
     shadow = sun and bool(connected)
+    local_lights = b.requires("local_lights", step)
     defines = {
         "SUN": int(sun),
         "SUN_SHADOW": int(shadow),
         "AMBIENT": int(b.requires("ambient", step)),
-        "LOCAL_LIGHTS": int(b.requires("local_lights", step)),
+        "LOCAL_LIGHTS": int(local_lights),
+        "SPOT_LIGHTS": int(local_lights and b.requires("spot_lights", step)),
     }
     if not shadow:
         return defines, {}

@@ -5,6 +5,8 @@ from __future__ import annotations
 from rendergraph.node.builder import Builder, depth
 from rendergraph.plan.graph import DrawScene, Program, State
 
+ALL_SLOTS = 0b11111  # of Material.textures, shaders/scene.glsl
+
 
 def scene_program(
     b: Builder,
@@ -23,6 +25,7 @@ def scene_program(
         "LAYERED": layered,
         "NORMAL_MAP": normal_map,
         "TEXTURE_ARRAYS": b.features.texture_arrays,
+        "TEXTURE_SLOTS": ALL_SLOTS if b.full else b.features.texture_slots,
     }
     return b.program("<scene.vert>", fragment, defines={**variant, **(defines or {})})
 

@@ -213,6 +213,7 @@ SIGNATURES: Final[dict[str, str]] = {
     "glPushDebugGroup": "v uuis",
     "glPopDebugGroup": "v",
     "glObjectLabel": "v uuis",
+    "glGetObjectLabel": "v uuipp",
 }  # fmt: skip
 
 

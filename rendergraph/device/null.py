@@ -1,4 +1,4 @@
-"""A device without GL: says, call by call, what a plan would have a real one do. For planner tests and ``rg plan``."""
+"""A device without GL: says, call by call, what a plan would have a real one do. Used by tests alone."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class Interface:
     uniform_blocks: dict[str, Block]
     storage_blocks: dict[str, Block]
     attributes: dict[str, int]
-    outputs: dict[str, int]
+    outputs: dict[str, int]  # an array's later elements as name[1], name[2]
     unsupported: tuple[str, ...]  # uniforms of types no graph can set (double)
 
 
@@ -88,7 +88,12 @@ def reflect(gl: GL, program: int) -> Interface:
         _bind(gl, program, e.UNIFORM_BLOCK, "glUniformBlockBinding"),
         _bind(gl, program, e.SHADER_STORAGE_BLOCK, "glShaderStorageBlockBinding"),
         {n: v[0] for n, v in _resources(gl, program, e.PROGRAM_INPUT, (e.LOCATION,)).items() if v[0] >= 0},
-        {n: v[0] for n, v in _resources(gl, program, e.PROGRAM_OUTPUT, (e.LOCATION,)).items() if v[0] >= 0},
+        {
+            f"{name}[{element}]" if element else name: location + element
+            for name, (location, count) in _resources(gl, program, e.PROGRAM_OUTPUT, (e.LOCATION, e.ARRAY_SIZE)).items()
+            for element in range(count)
+            if location >= 0
+        },
         tuple(unsupported),
     )
 

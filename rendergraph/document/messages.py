@@ -14,7 +14,7 @@ from rendergraph.plan.graph import Position
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One row of the table: ``text`` and ``help`` are ``str.format`` templates, ``explain`` is added by ``rg explain``."""
+    """One row of the table: ``text`` and ``help`` are ``str.format`` templates; ``rg explain`` adds ``explain``."""
 
     severity: str  # "error" | "warning" | "note"
     text: str
@@ -516,7 +516,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "missing barrier: '{before}' uses '{resource}' after '{after}', with no {kind} barrier between them",
         "add `- {{resource: {resource}, after: {after}, before: {before}, kind: {kind}}}` to barriers:, or remove the "
         "section to have all barriers derived",
-        "One of the two accesses is a shader store or atomic, which OpenGL does not order by itself (4.5 core, 7.13.2). "
+        "One of the two accesses is a shader store or atomic, which OpenGL does not order by itself (4.5 "
+        "core, 7.13.2). "
         "The kind names how the resource is used next.",
     ),
     "RG402": Message(
@@ -540,8 +541,10 @@ MESSAGES: Final[dict[str, Message]] = {
     "RG500": Message(
         "error",
         "OpenGL refused a call{where}{what}: {detail}",
-        "this is a mistake in the pass's sizes, formats or bindings, or in the tool; run `rg plan` to see what it binds",
-        "Raised when the driver reports an error while a pass runs. It names the pass, the resource where one is known, "
+        "this is a mistake in the pass's sizes, formats or bindings, or in the tool; run `rg plan` to see "
+        "what it binds",
+        "Raised when the driver reports an error while a pass runs. It names the pass, the resource where "
+        "one is known, "
         "and the line of the graph that asked for the pass.",
     ),
     "RG501": Message(
@@ -571,9 +574,7 @@ MESSAGES: Final[dict[str, Message]] = {
         "device {index} was asked for, but device {open} is already open in this process",
         "close it first, or use another process: one OpenGL context per process",
     ),
-    "RG510": Message(
-        "error", "shader file {file} cannot be read: {detail}", "{hint}"
-    ),
+    "RG510": Message("error", "shader file {file} cannot be read: {detail}", "{hint}"),
     "RG511": Message(
         "error",
         "#include {name} is not found{chain}",
@@ -639,7 +640,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "no resource '{name}' to capture",
         "capture one of {known}",
-        "Only resources that a pass of the finished plan touches can be captured. A culled pass writes nothing: run with "
+        "Only resources that a pass of the finished plan touches can be captured. A culled pass writes "
+        "nothing: run with "
         "--no-cull to keep it.",
     ),
     "RG565": Message(
@@ -660,7 +662,13 @@ MESSAGES: Final[dict[str, Message]] = {
         "the capture of '{name}' and the output '{output}' would both write {file}",
         "give the output another file, as --set outputs.{output}.file=final.png",
     ),
-    "RG569": Message("error", "no frame was timed, so there is nothing to trace", "ask for --samples 1 or more"),
+    "RG569": Message(
+        "error",
+        "pass '{subpass}' draws into '{resource}', but its shader has no output at location {location}",
+        "declare it: layout(location = {location}) out vec4 o_color; colours under write: are numbered in order",
+        "OpenGL leaves a colour target without an output undefined. An output that is declared but never assigned is "
+        "removed by the compiler.",
+    ),
     "RG570": Message("error", "there is no node '{name}'", "{hint}"),
     "RG571": Message("error", "{path} exists already", "choose another name, or remove it first"),
     "RG572": Message(
@@ -669,6 +677,7 @@ MESSAGES: Final[dict[str, Message]] = {
     "RG573": Message(
         "error", "cannot write to standard output: {reason}", "redirect it elsewhere, or free space where it goes"
     ),
+    "RG574": Message("error", "no frame was timed, so there is nothing to trace", "ask for --samples 1 or more"),
     "RG580": Message(
         "error",
         "worker process {process} did not finish: {reason}",
@@ -696,7 +705,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "{where}: not a glTF 2.0 file: {reason}",
         "export the scene again as glTF 2.0, .glb or .gltf",
-        "A .glb file is a 12-byte header ('glTF', version 2, length) and chunks, the first of them JSON; a .gltf file is "
+        "A .glb file is a 12-byte header ('glTF', version 2, length) and chunks, the first of them JSON; a "
+        ".gltf file is "
         "UTF-8 JSON. A file cut short by a failed download or copy fails here.",
     ),
     "RG603": Message("error", "{where}: invalid JSON: {reason}", "repair the file, or export the scene again"),

@@ -6,14 +6,13 @@ Works on the plain data of the file, so that these mistakes are reported togethe
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache
 from typing import Any
 
 from rendergraph.document.messages import Diagnostic, diagnose
 from rendergraph.document.model_errors import MAX_MISTAKES, Mistake, validate_strictly
 from rendergraph.document.suggest import did_you_mean
 from rendergraph.node.contract import Node, Port
-from rendergraph.node.discovery import find_node, node_names
+from rendergraph.node.discovery import node_names, try_node
 from rendergraph.node.params import Params
 from rendergraph.plan.graph import Position
 
@@ -63,7 +62,7 @@ def misplaced(entry: Any, key: str) -> str | None:
     node = entry.get("node") if isinstance(entry, dict) else None
     if not isinstance(node, str) or node not in node_names():
         return None
-    found = _loaded(node)
+    found = try_node(node)
     if not isinstance(found, type):
         return None
     sections = {"set": found.params_type.model_fields, "read": found.inputs, "write": found.outputs}
@@ -71,20 +70,11 @@ def misplaced(entry: Any, key: str) -> str | None:
     return f"write it under `{section}:`" if section else None
 
 
-@cache
-def _loaded(name: str) -> type[Node[Any]] | str:
-    """The node, or why it cannot be loaded: other people's packages may fail in any way when imported."""
-    try:
-        return find_node(name)
-    except Exception as error:
-        return f"{type(error).__name__}: {error}"
-
-
 def _node(name: str, node: str, locate: Locate) -> type[Node[Any]] | Diagnostic:
     if node not in node_names():
         hint = did_you_mean(node, node_names(), "nodes: {choices}")
         return diagnose("RG200", locate("passes", name, "node"), name=name, node=node, hint=hint)
-    found = _loaded(node)
+    found = try_node(node)
     if isinstance(found, str):
         return diagnose("RG207", locate("passes", name, "node"), node=node, reason=found)
     return found

@@ -16,7 +16,7 @@ from pydantic_core import core_schema
 
 from rendergraph.document.models import DocumentModel
 from rendergraph.node.contract import Node, Port
-from rendergraph.node.discovery import find_node, node_folder, node_names
+from rendergraph.node.discovery import find_node, node_folder, node_names, try_node
 
 DIALECT: Final = "http://json-schema.org/draft-07/schema#"
 IDENTITY: Final = "urn:rendergraph:graph:1"
@@ -30,8 +30,14 @@ def shipped_nodes() -> tuple[str, ...]:
 
 
 def json_schema(nodes: Iterable[str] | None = None) -> dict[str, Any]:
-    """The schema with the ports and parameters of ``nodes``; by default of all nodes found, shipped or installed."""
-    found = [find_node(name) for name in sorted(node_names() if nodes is None else nodes)]
+    """The schema with the ports and parameters of ``nodes``; by default of all nodes found, shipped or installed.
+
+    Installed nodes that cannot be imported are left out.
+    """
+    if nodes is None:
+        found = [node for node in map(try_node, node_names()) if not isinstance(node, str)]
+    else:
+        found = [find_node(name) for name in sorted(nodes)]
     models: dict[type[BaseModel], None] = dict.fromkeys([DocumentModel, *(node.params_type for node in found)])
     references, combined = models_json_schema(
         [(model, "validation") for model in models], ref_template=_REFERENCE, schema_generator=_Generator

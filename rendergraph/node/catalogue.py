@@ -5,24 +5,34 @@ from __future__ import annotations
 import difflib
 from typing import Any
 
-from rendergraph.document.messages import RenderGraphError, diagnose
+from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.node.contract import Node, Port
-from rendergraph.node.discovery import find_node, node_names
+from rendergraph.node.discovery import node_names, try_node
 
 
-def describe_nodes() -> list[dict[str, Any]]:
-    """All nodes, by name."""
-    return [_describe(find_node(name)) for name in node_names()]
+def describe_nodes() -> tuple[list[dict[str, Any]], list[Diagnostic]]:
+    """All nodes by name, and RG207 for each whose package cannot be imported."""
+    described: list[dict[str, Any]] = []
+    broken: list[Diagnostic] = []
+    for name in node_names():
+        node = try_node(name)
+        if isinstance(node, str):
+            broken.append(diagnose("RG207", node=name, reason=node))
+        else:
+            described.append(_describe(node))
+    return described, broken
 
 
 def describe_node(name: str) -> dict[str, Any]:
-    """One node. Raises RenderGraphError RG570 for an unknown name."""
-    try:
-        return _describe(find_node(name))
-    except KeyError:
+    """One node. Raises RenderGraphError RG570 for an unknown name, RG207 for one that cannot be imported."""
+    if name not in node_names():
         near = difflib.get_close_matches(name, node_names(), 1)
         hint = f"did you mean '{near[0]}'?" if near else "`rg nodes` lists them"
-        raise RenderGraphError([diagnose("RG570", name=name, hint=hint)], exit_code=2) from None
+        raise RenderGraphError([diagnose("RG570", name=name, hint=hint)], exit_code=2)
+    node = try_node(name)
+    if isinstance(node, str):
+        raise RenderGraphError([diagnose("RG207", node=name, reason=node)])
+    return _describe(node)
 
 
 def _describe(node: type[Node[Any]]) -> dict[str, Any]:

@@ -26,6 +26,15 @@ def node_names() -> tuple[str, ...]:
 
 
 @cache
+def try_node(name: str) -> type[Node[Any]] | str:
+    """The node class, or why there is none: other people's packages may fail in any way when imported."""
+    try:
+        return find_node(name)
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+
+
+@cache
 def find_node(name: str) -> type[Node[Any]]:
     """The node class of that name.
 

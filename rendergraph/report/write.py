@@ -15,7 +15,7 @@ from rendergraph.report.resources import resources_record
 from rendergraph.report.tables import lifetime_table, timing_table
 from rendergraph.report.timing import timing_record
 from rendergraph.report.trace import write_trace
-from rendergraph.run.image_files import capture_file, write_image
+from rendergraph.run.image_files import write_capture, write_image
 from rendergraph.run.result import FrameResult
 
 
@@ -52,9 +52,7 @@ def write_result(
         write_image(path, pixels)
         files.append(path)
     for name, pixels in result.captures.items():
-        path = folder / capture_file(name)
-        write_image(path, pixels)
-        files.append(path)
+        files += write_capture(folder, result.plan.graph.resources[name], pixels)
     timing = timing_record(result, document.model.title)
     watched = result.frames - 1 + result.times.warm_up
     resources = resources_record(

@@ -21,6 +21,7 @@ from rendergraph.device.textures import (
     poison_texture,
 )
 from rendergraph.document.formats import FORMATS
+from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.plan.graph import (
     Access,
     ClearResource,
@@ -137,6 +138,7 @@ class CommandBuilder:
         if subpass.program is not None:
             program = self._programs[subpass.name]
             if not subpass.program.is_compute:
+                _require_outputs(subpass, program)
                 self._targets(subpass)
             record.set("program", program.glo, gl.glUseProgram, program.glo)
             self._bindings.bind(subpass, program)
@@ -255,7 +257,9 @@ class CommandBuilder:
         filter_ = enums.LINEAR if work.linear else enums.NEAREST
         for layer in range(min(source.desc.layers, destination.desc.layers)):
             at = [self._read_target(t, layer) for t in (source, destination)]
-            mask = enums.DEPTH_BUFFER_BIT if FORMATS[source.desc.format].depth else enums.COLOR_BUFFER_BIT
+            format_ = FORMATS[source.desc.format]
+            mask = enums.DEPTH_BUFFER_BIT if format_.depth else enums.COLOR_BUFFER_BIT
+            mask |= enums.STENCIL_BUFFER_BIT if format_.stencil else 0
             record.call(
                 device.gl.glBlitNamedFramebuffer, at[0].glo, at[1].glo,
                 0, 0, at[0].width, at[0].height, 0, 0, at[1].width, at[1].height, mask, filter_,
@@ -271,3 +275,14 @@ class CommandBuilder:
                 made = create_framebuffer(self._device, [(texture, 0, at)], None, texture.label)
             self._framebuffers[key] = made
         return self._framebuffers[key]
+
+
+def _require_outputs(subpass: SubPass, program: LinkedProgram) -> None:
+    """Raise RenderGraphError RG569 for a colour target the shader has no output for: GL would leave it undefined."""
+    colors = [a.resource for a in subpass.accesses if a.usage is Usage.COLOR]
+    written = set(program.interface.outputs.values())
+    for location, resource in enumerate(colors):
+        if location not in written and subpass.state.color_mask:
+            raise RenderGraphError([
+                diagnose("RG569", subpass.position, subpass=subpass.name, resource=resource, location=location)
+            ])  # fmt: skip

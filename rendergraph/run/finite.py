@@ -1,4 +1,7 @@
-"""`--check-finite`: after each sub-pass, every float target it wrote is read back and searched for NaN and Inf."""
+"""`--check-finite`: after each sub-pass, every level of each float texture it wrote is searched for NaN and Inf.
+
+Buffers are not: what their words mean is known to the shaders alone.
+"""
 
 from __future__ import annotations
 
@@ -23,18 +26,19 @@ def check_finite_writes(device: Device, plan: Plan, subpass: SubPass, storage: A
             continue
         if FORMATS[desc.format].channel not in (Channel.FLOAT, Channel.DEPTH):
             continue
-        mip = access.mip or 0
-        pixels = read_texture(device, storage.texture(access.resource, frame), mip, access.layer)
-        layers = pixels if pixels.ndim == 4 else pixels[None]
-        bad = ~np.isfinite(layers).all(axis=-1)
-        if not bad.any():
-            continue
-        layer, y, x = (int(v) for v in np.argwhere(bad)[0])
-        texel = layers[layer, y, x]
-        where = "" if mip == 0 and len(layers) == 1 else f", mip {mip}, layer {layer}"
-        raise RenderGraphError([
-            diagnose(
-                "RG565", subpass.position, subpass=subpass.name, resource=access.resource, x=x, y=y, where=where,
-                value="(" + ", ".join(f"{v:g}" for v in texel) + ")", count=int(bad.sum()), total=bad.size,
-            )
-        ])  # fmt: skip
+        texture = storage.texture(access.resource, frame)
+        for mip in range(desc.mips) if access.mip is None else (access.mip,):
+            pixels = read_texture(device, texture, mip, access.layer)
+            layers = pixels if pixels.ndim == 4 else pixels[None]
+            bad = ~np.isfinite(layers).all(axis=-1)
+            if not bad.any():
+                continue
+            layer, y, x = (int(v) for v in np.argwhere(bad)[0])
+            texel = layers[layer, y, x]
+            where = "" if mip == 0 and len(layers) == 1 else f", mip {mip}, layer {layer}"
+            raise RenderGraphError([
+                diagnose(
+                    "RG565", subpass.position, subpass=subpass.name, resource=access.resource, x=x, y=y, where=where,
+                    value="(" + ", ".join(f"{v:g}" for v in texel) + ")", count=int(bad.sum()), total=bad.size,
+                )
+            ])  # fmt: skip

@@ -11,7 +11,7 @@ from rendergraph.device.context import Device, open_device
 from rendergraph.document.load import Document
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.plan.plan import PlanOptions
-from rendergraph.run.image_files import capture_file, require_writer
+from rendergraph.run.image_files import capture_files, require_writer
 from rendergraph.run.plan_document import PlannedDocument, plan_document
 from rendergraph.run.result import DeviceFacts, FrameResult, Pixels, RunTimes, SteadyState
 from rendergraph.run.runner import Inspect, Runner
@@ -70,10 +70,12 @@ def _check_files(planned: PlannedDocument, document: Document, captures: tuple[s
         if name not in planned.plan.lifetimes:
             known = ", ".join(sorted(planned.plan.lifetimes))
             raise RenderGraphError([diagnose("RG564", name=name, known=known)], exit_code=2)
-        file = capture_file(name)
-        if files.get(file, name) != name:
-            place = document.position("outputs", files[file], "file")
-            raise RenderGraphError([diagnose("RG568", place, name=name, output=files[file], file=file)], exit_code=2)
+        for file in capture_files(planned.plan.graph.resources[name]):
+            if files.get(file, name) != name:
+                place = document.position("outputs", files[file], "file")
+                raise RenderGraphError(
+                    [diagnose("RG568", place, name=name, output=files[file], file=file)], exit_code=2
+                )
 
 
 def run_plan(

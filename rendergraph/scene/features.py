@@ -26,6 +26,7 @@ class SceneFeatures:
     draws: int = 0
     materials: int = 0
     texture_arrays: int = 0
+    texture_slots: int = 0  # bit per slot of Material.textures (shaders/scene.glsl) that some drawn material fills
 
     @property
     def local_lights(self) -> int:

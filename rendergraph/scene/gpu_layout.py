@@ -120,11 +120,7 @@ def pack_materials(scene: Scene, placement: TexturePlacement) -> bytes:
             material.metallic, material.roughness, material.normal_scale, material.occlusion_strength,
         )  # fmt: skip
         row["flags"] = _flags(material)
-        uses = (
-            material.base_color_texture, material.metallic_roughness_texture, material.normal_texture,
-            material.occlusion_texture, material.emissive_texture,
-        )  # fmt: skip
-        for slot, use in enumerate(uses):
+        for slot, use in enumerate(material.textures):
             place = None if use is None else placement.ref(use.image)
             if use is not None and place is not None:
                 row["textures"][slot] = _texture_ref(use, place)

@@ -65,6 +65,17 @@ class Material:
     occlusion_texture: TextureUse | None = None  # r
     emissive_texture: TextureUse | None = None  # sRGB
 
+    @property
+    def textures(self) -> tuple[TextureUse | None, ...]:
+        """The five slots, in the order of ``Material.textures`` in shaders/scene.glsl."""
+        return (
+            self.base_color_texture,
+            self.metallic_roughness_texture,
+            self.normal_texture,
+            self.occlusion_texture,
+            self.emissive_texture,
+        )
+
 
 class PixelSource(Protocol):
     """An image not decoded yet: its size is known, its pixels come on demand."""
@@ -285,4 +296,5 @@ class Scene:
             draws=len(self.instances),
             materials=len(self.materials),
             texture_arrays=arrays,
+            texture_slots=sum(1 << slot for slot in range(5) if any(m.textures[slot] is not None for m in used)),
         )

@@ -94,14 +94,7 @@ def place_textures(scene: Scene) -> TexturePlacement:
 
 def texture_images(material: Material) -> Iterable[int]:
     """Indices into ``Scene.images`` that a material samples."""
-    uses = (
-        material.base_color_texture,
-        material.metallic_roughness_texture,
-        material.normal_texture,
-        material.occlusion_texture,
-        material.emissive_texture,
-    )
-    return [use.image for use in uses if use is not None]
+    return [use.image for use in material.textures if use is not None]
 
 
 def size_class(width: int, height: int) -> int:

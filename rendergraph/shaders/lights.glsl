@@ -1,6 +1,12 @@
 // Local lights. Layout mirrored by rendergraph/scene/gpu_layout.py.
+//
+//   SPOT_LIGHTS  0: all are points, and cones are not compiled
 #ifndef LIGHTS_GLSL
 #define LIGHTS_GLSL
+
+#ifndef SPOT_LIGHTS
+#define SPOT_LIGHTS 1
+#endif
 
 // 64 bytes
 struct Light {
@@ -40,9 +46,11 @@ vec3 light_irradiance(Light light, vec3 position, out vec3 direction) {
     float distance2 = dot(to_light, to_light);
     float attenuation = distance_attenuation(distance2, light.position_radius.w, light.intensity.w);
     direction = to_light * inversesqrt(max(distance2, 1e-30));
+#if SPOT_LIGHTS
     if (light.axis_outer.w >= -1.0) {
         attenuation *= cone_attenuation(dot(light.axis_outer.xyz, -direction), light.inner.x, light.axis_outer.w);
     }
+#endif
     return light.intensity.rgb * attenuation;
 }
 

@@ -1,6 +1,6 @@
 // The light that leaves a surface towards the eye: the same code for deferred and forward shading.
 //
-//   SUN, SUN_SHADOW, AMBIENT, LOCAL_LIGHTS  0 or 1: what the scene has; the rest is not compiled
+//   SUN, SUN_SHADOW, AMBIENT, LOCAL_LIGHTS, SPOT_LIGHTS  0 or 1: what the scene has; the rest is not compiled
 #ifndef SHADING_GLSL
 #define SHADING_GLSL
 

@@ -1,8 +1,13 @@
 // A fragment's surface, from its interpolated vertex and its material.
 //
-//   NORMAL_MAP  some material of the scene has a normal map
+//   NORMAL_MAP     some material of the scene has a normal map
+//   TEXTURE_SLOTS  bit per slot of Material.textures that some material fills; the rest is not fetched
 #ifndef SURFACE_GLSL
 #define SURFACE_GLSL
+
+#ifndef TEXTURE_SLOTS
+#define TEXTURE_SLOTS 31
+#endif
 
 #include <scene.glsl>
 #include <textures.glsl>
@@ -78,10 +83,14 @@ Surface fetch_surface() {
     // A rolled loop over the textures the material has: five inlined fetches would cost five times the compilation, and
     // a software rasteriser runs both sides of a branch, but skips iterations.
     vec4 texels[5] = vec4[5](vec4(1.0), vec4(1.0), vec4(1.0), vec4(1.0), vec4(1.0));
-#if TEXTURE_ARRAYS
+#if TEXTURE_ARRAYS && TEXTURE_SLOTS == 1 // base colour alone: the loop would cost more than the fetch
+    texels[SLOT_BASE_COLOR] = sample_material(SLOT_BASE_COLOR);
+#elif TEXTURE_ARRAYS
     uint pending = 0u;
     for (int slot = 0; slot < 5; ++slot) {
-        pending |= materials[vertex.material].textures[slot].array != NO_TEXTURE ? 1u << slot : 0u;
+        if ((TEXTURE_SLOTS & (1 << slot)) != 0) {
+            pending |= materials[vertex.material].textures[slot].array != NO_TEXTURE ? 1u << slot : 0u;
+        }
     }
     do {
         int slot = findLSB(pending | 16u);

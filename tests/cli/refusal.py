@@ -29,7 +29,8 @@ def write_graph(
     (folder / "paint.frag").write_bytes(text)
     path = folder / "graph.yaml"
     path.write_text(
-        f"rendergraph: 1\nframe: {{size: [32, 18]}}\n{extra}resources:\n{resources}passes:\n{passes}outputs: {outputs}\n"
+        f"rendergraph: 1\nframe: {{size: [32, 18]}}\n{extra}resources:\n{resources}"
+        f"passes:\n{passes}outputs: {outputs}\n"
     )
     return path
 

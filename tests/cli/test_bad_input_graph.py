@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Rg
-from tests.cli.refusal import A, PAINT, SHOW, assert_refused, write_graph
+from tests.cli.refusal import PAINT, SHOW, A, assert_refused, write_graph
 
 MISTAKES = {
     "unknown node": ({"passes": PAINT + SHOW.replace("tonemap", "tonemapp")}, "RG200", 7, ["'tonemap'"]),

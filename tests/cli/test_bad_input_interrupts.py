@@ -53,9 +53,11 @@ def test_ctrl_c(tmp_path: Path, moment: str, graph: str) -> None:
     own = str(write_graph(tmp_path / "own", outputs="{image: {file: 'frame_{frame}.png'}}"))
     code, text = interrupt_at(
         moment,
-        ["render", own if graph == "own" else graph, "--scene", "cornell", "--size", "32x18", "--frames", "2000"]
-        + ["-o", str(out), "--samples", "0"],
-    )
+        [
+            "render", own if graph == "own" else graph, "-o", str(out), "--samples", "0",
+            "--scene", "cornell", "--size", "32x18", "--frames", "2000",
+        ],
+    )  # fmt: skip
     assert moment in text  # or nothing was interrupted
     assert code == 130
     assert text.endswith("interrupted\n")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Rg
-from tests.cli.refusal import A, PAINT, SHOW, assert_misused, assert_refused, run_rg, write_graph
+from tests.cli.refusal import PAINT, SHOW, A, assert_misused, assert_refused, run_rg, write_graph
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,9 @@ def bomb(width: int, height: int) -> bytes:
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
 
     header = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes(64))) + chunk(b"IEND", b"")
+    return (
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes(64))) + chunk(b"IEND", b"")
+    )
 
 
 def set_at(tiny: TinyGltf, pointer: str, value: Any) -> None:
@@ -188,5 +190,7 @@ def test_an_image_whose_header_alone_is_sound(rg: Rg, tmp_path: Path) -> None:
 
 
 def test_gltf_json_bomb_of_depth(rg: Rg, tmp_path: Path) -> None:
-    (tmp_path / "deep.gltf").write_text('{"asset": {"version": "2.0"}, "extras": ' + "[" * 100_000 + "]" * 100_000 + "}")
+    (tmp_path / "deep.gltf").write_text(
+        '{"asset": {"version": "2.0"}, "extras": ' + "[" * 100_000 + "]" * 100_000 + "}"
+    )
     assert_refused(rg("plan", str(scene_graph(tmp_path, "deep.gltf"))), 2, "RG603", "deep.gltf")

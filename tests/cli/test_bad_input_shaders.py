@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Rg
-from tests.cli.refusal import PAINT, SHADER, SHOW, assert_refused, write_graph
+from tests.cli.refusal import PAINT, SHADER, SHOW, A, assert_refused, write_graph
 
 pytestmark = pytest.mark.gpu
 
@@ -13,11 +13,15 @@ HEAD = "#version 450\n"
 TAIL = "out vec4 o_color;\nvoid main() { o_color = vec4(1.0); }\n"
 
 SHADERS: dict[str, tuple[str | bytes, str, str]] = {
-    "unknown function": (HEAD + "out vec4 o_color;\nvoid main() {\n  o_color = vec5(1);\n}\n", "RG515", "paint.frag:4:12"),
+    "unknown function": (
+        HEAD + "out vec4 o_color;\nvoid main() {\n  o_color = vec5(1);\n}\n", "RG515", "paint.frag:4:12",
+    ),
     "no semicolon": (HEAD + TAIL.replace(");", ")"), "RG515", "paint.frag:3:"),
     "empty": ("", "RG515", "paint.frag:1:"),
     "in an include": (HEAD + '#include "part.glsl"\n' + TAIL, "RG515", "part.glsl:2:"),
-    "after an include": (HEAD + "#include <frame.glsl>\n" + TAIL.replace("vec4(1.0)", "nothing"), "RG515", "paint.frag:4:"),
+    "after an include": (
+        HEAD + "#include <frame.glsl>\n" + TAIL.replace("vec4(1.0)", "nothing"), "RG515", "paint.frag:4:",
+    ),
     "include missing": (HEAD + '#include "gone.glsl"\n' + TAIL, "RG511", "paint.frag:2:1"),
     "shared include missing": (HEAD + "#include <gone.glsl>\n" + TAIL, "RG511", "paint.frag:2:1"),
     "include in a circle": (HEAD + '#include "loop.glsl"\n' + TAIL, "RG512", "loop.glsl:1:1"),
@@ -26,6 +30,8 @@ SHADERS: dict[str, tuple[str | bytes, str, str]] = {
     "does not link": (
         HEAD + "in vec3 v_nothing;\n" + TAIL.replace("vec4(1.0)", "v_nothing.xyzz"), "RG516", "graph.yaml:6:3",
     ),
+    "no output": (HEAD + "void main() {}\n", "RG569", "graph.yaml:6:3"),
+    "output elsewhere": (HEAD + "layout(location = 1) " + TAIL, "RG569", "location 0"),
     "not UTF-8": ((HEAD + TAIL).encode() + b"// caf\xe9\n", "RG510", "0xE9"),
     "garbage": (bytes(range(128, 256)), "RG510", "paint.frag"),
     "unbound sampler": (
@@ -74,6 +80,19 @@ def test_what_is_not_finite_is_found(rg: Rg, tmp_path: Path, bits: str, value: s
     assert_refused(outcome, 1, "RG565", "'paint.", "'a'", "(3, 2)", value, "graph.yaml:6:3")
     assert not out.exists()
     assert rg("render", graph, "-o", str(out), "--samples", "0").code == 0  # without the check it is not an error
+
+
+def test_an_array_of_outputs_has_a_location_for_each(rg: Rg, tmp_path: Path) -> None:
+    text = HEAD + "out vec4 o_all[2];\nvoid main() { o_all[0] = vec4(1.0); o_all[1] = vec4(0.5); }\n"
+    graph = write_graph(
+        tmp_path,
+        resources=A + A.replace("a:", "b:"),
+        passes=PAINT.replace("o_color: a", "one: a, two: b"),
+        outputs="{a: {file: a.png}, b: {file: b.png}}",
+        shader=text,
+    )
+    outcome = rg("render", str(graph), "-o", str(tmp_path / "out"), "--samples", "0")
+    assert outcome.code == 0, outcome.err
 
 
 def test_nothing_of_an_earlier_run_is_touched(rg: Rg, tmp_path: Path) -> None:

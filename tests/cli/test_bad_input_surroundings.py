@@ -36,15 +36,15 @@ def test_without_opengl_the_line_to_type_is_given(tmp_path: Path, command: list[
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize(
-    "command", [["validate", "graph.yaml"], ["plan", "graph.yaml"], ["nodes"], ["schema"]], ids=lambda c: c[0]
-)
-def test_without_opengl_the_rest_works(tmp_path: Path, command: list[str]) -> None:
-    write_graph(tmp_path)
+def test_without_opengl_the_rest_works(tmp_path: Path) -> None:
+    graph = str(write_graph(tmp_path))
+    commands = [["validate", graph], ["plan", graph], ["graph", graph], ["explain", graph], ["nodes"], ["schema"]]
+    code = "import sys; from rendergraph.cli import main\n"
+    for command in commands:
+        code += f"try: main({command!r})\nexcept SystemExit as ended: assert ended.code == 0, {command!r}\n"
     env = os.environ | {"GLCONTEXT_LINUX_LIBEGL": "/nonexistent"}
-    outcome = run_rg(command, env=env, cwd=tmp_path)
-    assert outcome.code == 0, outcome.err
-    assert outcome.out
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 # ---------------------------------------------------------------- permission
@@ -183,7 +183,7 @@ def test_exr_without_its_library_is_refused_before_rendering(
     graph = write_graph(tmp_path, shader="this would not compile", passes=PAINT, outputs="{a: {file: a.EXR}}")
     out = tmp_path / "out"
     outcome = rg("render", str(graph), "-o", str(out))
-    assert_refused(outcome, 3, "RG562", "a.EXR", "graph.yaml:8:", "pip install 'rendergraph[exr]'", folder=out)
+    assert_refused(outcome, 3, "RG562", "a.EXR", "graph.yaml:7:", "pip install 'rendergraph[exr]'", folder=out)
 
 
 # ---------------------------------------------------------------- streams
@@ -204,9 +204,9 @@ def closed() -> None:
     os.close(1)
 
 
-@pytest.mark.parametrize("command", ["validate", "plan", "graph", "schema", "nodes"])
+@pytest.mark.parametrize("command", ["validate", "plan", "schema"])
 def test_a_reader_of_stdout_that_left_is_no_error(tmp_path: Path, command: str) -> None:
-    arguments = [command] if command in ("schema", "nodes") else [command, write_graph(tmp_path)]
+    arguments = [command] if command == "schema" else [command, write_graph(tmp_path)]
     outcome = run_rg(arguments, before=to_reader_that_left)
     assert (outcome.code, outcome.err) == (0, "")
 
@@ -248,7 +248,10 @@ def test_a_stdout_without_unicode(tmp_path: Path) -> None:
 
 def on_terminal(arguments: list[str], env: dict[str, str]) -> str:
     """What a command writes to a terminal."""
-    main, terminal = pty.openpty()
+    try:
+        main, terminal = pty.openpty()
+    except OSError:
+        pytest.skip("no pseudo-terminals here")
     with subprocess.Popen([sys.executable, "-c", RUN, *arguments], stdout=terminal, stderr=terminal, env=env):
         os.close(terminal)
         text = b""
@@ -293,5 +296,4 @@ def test_an_output_folder_whose_name_is_not_utf_8(tmp_path: Path) -> None:
     out = os.fsencode(tmp_path) + b"/out\xe9"
     outcome = run_rg(["render", write_graph(tmp_path), "-o", out, "--samples", "0"])
     assert outcome.code == 0, outcome.err
-    assert sorted(os.listdir(out)) == [b"image.png", b"resources.json", b"timing.json"]
-
+    assert sorted(p.name for p in Path(os.fsdecode(out)).iterdir()) == ["image.png", "resources.json", "timing.json"]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Rg
-from tests.cli.refusal import run_rg
+from tests.cli.refusal import assert_refused, run_rg
 
 
 @pytest.mark.gpu
@@ -21,7 +21,7 @@ def test_a_new_graph_renders(rg: Rg, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["123", "null", "a, b: {c} \"d", "it's # here", "-", "$name", "ünï", "new\nline", "x.yml", "caf\udce9"]
+    "name", ["123", "null", 'a, b: {c} "d', "it's # here", "-", "$name", "ünï", "new\nline", "x.yml", "caf\udce9"]
 )
 def test_a_new_graph_of_any_name_is_valid(rg: Rg, tmp_path: Path, name: str) -> None:
     assert rg("new", "graph", str(tmp_path / name)).code == 0
@@ -45,9 +45,7 @@ def installed(rg: Rg, tmp_path: Path) -> dict[str, str]:
 @pytest.mark.gpu
 def test_a_new_node_passes_its_own_test(tmp_path: Path, installed: dict[str, str]) -> None:
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests"]
-    done = subprocess.run(
-        command, cwd=tmp_path / "my_blur", env=installed, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run(command, cwd=tmp_path / "my_blur", env=installed, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
     assert "2 passed" in done.stdout
 
@@ -71,3 +69,6 @@ def test_a_node_that_cannot_be_imported_is_told_apart(tmp_path: Path, installed:
     listed = run_rg(["nodes"], env=installed)
     assert listed.code == 0, listed.err
     assert "tonemap" in listed.out
+    assert "RG207" in listed.err
+    assert run_rg(["schema"], env=installed).code == 0
+    assert_refused(run_rg(["nodes", "my_blur"], env=installed), 1, "RG207", "no_such_module_at_all")

@@ -25,7 +25,7 @@ def test_render_writes_images_and_records(rg: Rg, graph: Path, tmp_path: Path) -
     out = tmp_path / "out"
     outcome = rg("render", str(graph), "-o", str(out), "--capture", "a", "--samples", "2")
     assert outcome.code == 0, outcome.err
-    assert sorted(p.name for p in out.iterdir()) == ["a.png", "image.png", "resources.json", "timing.json"]
+    assert sorted(p.name for p in out.iterdir()) == ["a.exr", "a.png", "image.png", "resources.json", "timing.json"]
     with Image.open(out / "image.png") as image:
         assert image.size == (64, 36)
         # linear 0.5, 0.25, 0.125 in sRGB: 187.5, 136.9, 99.1 (within dither)

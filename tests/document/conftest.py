@@ -11,16 +11,17 @@ from sample_graph import Fail, Load, find_node
 from rendergraph.document import node_checks
 from rendergraph.document.load import Document, load_document
 from rendergraph.document.messages import Diagnostic, RenderGraphError
+from rendergraph.node import discovery
 
 
 @pytest.fixture
 def made_nodes(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """The nodes above in place of the shipped ones."""
-    monkeypatch.setattr(node_checks, "find_node", find_node)
+    monkeypatch.setattr(discovery, "find_node", find_node)
     monkeypatch.setattr(node_checks, "node_names", lambda: ("blur", "broken", "open"))
-    node_checks._loaded.cache_clear()
+    discovery.try_node.cache_clear()
     yield
-    node_checks._loaded.cache_clear()
+    discovery.try_node.cache_clear()
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from rendergraph.run.image_files import display_pixels, read_image, write_image
+from rendergraph.run.image_files import picture, read_image, write_image
 
 FOLDER = Path(__file__).resolve().parent.parent / "goldens" / "llvmpipe"
 TOLERANCE = 1  # of 255: one rounding step
@@ -18,7 +18,7 @@ def compare(name: str, pixels: npt.NDArray[np.generic], failures: Path, *, regen
 
     The difference picture shows ``(d / 255) ** 0.25``, so that a single step is plainly visible.
     """
-    shown = display_pixels(pixels)[..., :3]
+    shown = picture(pixels)
     golden = FOLDER / f"{name}.png"
     if regenerate:
         write_image(golden, shown)
@@ -30,8 +30,8 @@ def compare(name: str, pixels: npt.NDArray[np.generic], failures: Path, *, regen
     if difference.max() <= TOLERANCE:
         return
     amplified = ((difference / 255.0) ** 0.25 * 255.0).astype(np.uint8)
-    for suffix, picture in (("actual", shown), ("expected", expected), ("difference", amplified)):
-        write_image(failures / f"{name}_{suffix}.png", picture)
+    for suffix, shot in (("actual", shown), ("expected", expected), ("difference", amplified)):
+        write_image(failures / f"{name}_{suffix}.png", shot)
     worst = np.unravel_index(int(difference.max(axis=-1).argmax()), difference.shape[:2])
     raise AssertionError(
         f"{name}: {int((difference.max(axis=-1) > TOLERANCE).sum())} pixels differ by up to {difference.max()} of 255, "

@@ -12,6 +12,7 @@ import pytest
 from rendergraph.document import node_checks
 from rendergraph.document.load import Document, load_document
 from rendergraph.document.messages import RenderGraphError
+from rendergraph.node import discovery
 from rendergraph.node.builder import Builder, color, sample, store_image
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.discovery import find_node
@@ -165,8 +166,9 @@ def install_toys(patch: pytest.MonkeyPatch) -> None:
     """Let graphs name the nodes above."""
     known = (*node_checks.node_names(), *TOYS)
     patch.setattr(node_checks, "node_names", lambda: known)
-    patch.setattr(node_checks, "find_node", _find)
+    patch.setattr(discovery, "find_node", _find)
     patch.setattr(build_passes, "find_node", _find)
+    discovery.try_node.cache_clear()
 
 
 def write(folder: Path, text: str) -> Document:

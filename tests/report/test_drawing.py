@@ -57,12 +57,12 @@ def test_layout_keeps_boxes_apart_and_edges_forward() -> None:
     for points in layout.routes.values():
         xs = [x for x, _ in points]
         assert xs == sorted(xs)
-    assert all(0 <= b.x and b.x + b.width <= layout.width and 0 <= b.y for b in layout.boxes.values())
+    assert all(b.x >= 0 and b.x + b.width <= layout.width and b.y >= 0 for b in layout.boxes.values())
     assert max(b.y + b.height for b in layout.boxes.values()) <= layout.height
 
 
 def test_long_edges_do_not_cross_boxes_between() -> None:
-    """a -> b -> c and a -> c: the long edge gets a lane of its own beside b."""
+    """A -> b -> c and a -> c: the long edge gets a lane of its own beside b."""
     layout = lay_out({"a": (30.0, 20.0), "b": (30.0, 20.0), "c": (30.0, 20.0)}, [("a", "b"), ("b", "c"), ("a", "c")])
     b, route = layout.boxes["b"], layout.routes["a", "c"]
     inside = [y for x, y in route if b.x <= x <= b.x + b.width]

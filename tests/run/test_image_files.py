@@ -8,7 +8,8 @@ import pytest
 from PIL import Image
 
 from rendergraph.document.messages import RenderGraphError
-from rendergraph.run.image_files import display_pixels, read_image, write_image
+from rendergraph.plan.graph import BufferDesc, Resource, TextureDesc
+from rendergraph.run.image_files import capture_files, display_pixels, read_image, write_capture, write_image
 
 
 def ramp(dtype: type, channels: int = 4) -> np.ndarray:
@@ -38,8 +39,41 @@ def test_nan_shows_as_magenta_and_infinity_as_white() -> None:
     assert display_pixels(pixels).tolist() == [[[255, 0, 255], [255, 0, 0]]]
 
 
-def test_integers_are_stretched_to_their_range() -> None:
-    assert display_pixels(np.array([[[0], [500], [1000]]], dtype=np.uint16))[0, :, 0].tolist() == [0, 127, 255]
+def test_integers_are_shown_by_their_types_range() -> None:
+    # 257 steps of uint16 are one of uint8; 128 of them lie in the middle and round up
+    assert display_pixels(np.array([[[0], [257], [386], [65535]]], dtype=np.uint16))[0, :, 0].tolist() == [0, 1, 2, 255]
+    assert display_pixels(np.array([[[-5], [127]]], dtype=np.int8))[0, :, 0].tolist() == [0, 255]
+
+
+@pytest.mark.parametrize(
+    ("desc", "suffixes"),
+    [
+        (TextureDesc("rgba8", 1, 1), {".png"}),
+        (TextureDesc("rgba16f", 1, 1), {".png", ".exr"}),
+        (TextureDesc("d32f", 1, 1), {".png", ".exr"}),
+        (TextureDesc("rg16", 1, 1), {".png", ".npy"}),
+        (TextureDesc("r32ui", 1, 1), {".png", ".npy"}),
+        (BufferDesc(16), {".npy"}),
+    ],
+)
+def test_captures_keep_their_values(desc: TextureDesc | BufferDesc, suffixes: set[str]) -> None:
+    pytest.importorskip("OpenEXR")
+    assert {Path(file).suffix for file in capture_files(Resource("a", desc))} == suffixes
+
+
+def test_a_depth_capture_is_visible_and_exact(tmp_path: Path) -> None:
+    pytest.importorskip("OpenEXR")
+    depth = np.array([[[0.001], [0.002], [0.0]]], dtype=np.float32)
+    paths = write_capture(tmp_path, Resource("z", TextureDesc("d32f", 3, 1)), depth)
+    assert [p.name for p in paths] == ["z.png", "z.exr"]
+    with Image.open(paths[0]) as image:
+        assert np.asarray(image).tolist() == [[128, 255, 0]]
+
+
+def test_a_buffer_capture_is_its_words(tmp_path: Path) -> None:
+    words = np.array([1, 2, 0xFFFFFFFF], dtype=np.uint32)
+    write_capture(tmp_path, Resource("b", BufferDesc(12)), words.view(np.float32).reshape(1, -1, 1))
+    assert np.load(tmp_path / "b.npy").view(np.uint32).tolist() == [words.tolist()]
 
 
 @pytest.mark.parametrize(("channels", "mode"), [(1, "L"), (2, "RGB"), (3, "RGB"), (4, "RGB")])

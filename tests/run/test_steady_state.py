@@ -1,11 +1,14 @@
 """From the second frame on nothing is created, compiled or uploaded; and history really is the last frame."""
 
+import ctypes
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rendergraph.device.context import open_device
+from rendergraph.device.gl import SIGNATURES
 from rendergraph.document.load import load_document
 from rendergraph.run.render import RenderOptions, render_document
 
@@ -69,3 +72,49 @@ def test_history_is_last_frames_content(tmp_path: Path) -> None:
     values = [float(np.unique(result.images[f"now@{i}"])[0]) for i in range(5)]
     assert values == [1.0, 3.0, 7.0, 15.0, 31.0]
     assert result.files["now@3"] == "now_0003.npy"
+
+
+def test_no_raw_call_creates_or_uploads_after_the_first_frame(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The counters see what goes through the device layer; this sees every entry point."""
+    gl = open_device().gl
+    made: Counter[str] = Counter()
+    makers = ("glCreate", "glGenTextures", "glNamedBuffer", "glTextureSubImage", "glTextureStorage", "glTextureView")
+    for name in SIGNATURES:
+        if name.startswith(makers):
+
+            def counted(*arguments: object, name: str = name, call: object = getattr(gl, name)) -> object:
+                made[name] += 1
+                return call(*arguments)  # type: ignore[operator]
+
+            monkeypatch.setattr(gl, name, counted)
+    totals = []
+    for frames in (1, 5):
+        made.clear()
+        options = RenderOptions(size=(96, 54), frames=frames, samples=0)
+        render_document(load_document("deferred_shading", SMALL), options)
+        totals.append(dict(made))
+    # More frames need larger blocks of frame constants, not more calls.
+    assert totals[0] == totals[1]
+    assert sum(totals[0].values()) > 50
+
+
+def test_objects_carry_the_graphs_names() -> None:
+    device = open_device()
+    seen: dict[str, set[str]] = {}
+
+    def remember(identifier: int, name: int, label: str) -> None:
+        given = ctypes.create_string_buffer(256)
+        original(identifier, name, label)
+        device.gl.glGetObjectLabel(identifier, name, len(given), None, given)
+        seen.setdefault(hex(identifier), set()).add(given.value.decode())
+
+    original = device.name
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(type(device), "name", staticmethod(remember))
+        device.programs.clear()
+        render_document(load_document("deferred_shading", SMALL), RenderOptions(size=(96, 54), samples=0))
+    textures, buffers, framebuffers, programs = (seen[hex(kind)] for kind in (0x1702, 0x82E0, 0x8D40, 0x82E2))
+    assert {"hdr", "depth", "shadow", "slot 0"} <= textures
+    assert {"Frame", "Instances", "transient buffers"} <= buffers
+    assert "light.light" in framebuffers
+    assert any("deferred_lighting.frag" in label for label in programs)
