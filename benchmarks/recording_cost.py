@@ -2,10 +2,10 @@
 
     python -m benchmarks.recording_cost [GRAPH] [WIDTHxHEIGHT]
 
-Without a graph, the chain of sixteen full-screen passes of ``benchmarks.frame_overhead``. A frame under ``gpu_timestamp``
-stays pipelined, so its cost is a share of the frame; ``finish_wall`` waits after every pass, so its cost is milliseconds a
-pass. Both are measured on every renderer: a clock's cost does not depend on whether its figures can be believed. Targets:
-2 % of the frame, 0.15 ms a pass.
+Without a graph, the chain of sixteen full-screen passes of ``benchmarks.frame_overhead``. A frame under
+``gpu_timestamp`` stays pipelined, so its cost is a share of the frame; ``finish_wall`` waits after every pass, so its
+cost is milliseconds a pass. Both are measured on every renderer: a clock's cost does not depend on whether its figures
+can be believed. Targets: 2 % of the frame, 0.15 ms a pass.
 
 Every frame ends with a flush: llvmpipe drops full-screen work that the next frame draws over before it was handed over,
 which no clock is to blame for.

@@ -83,7 +83,7 @@ def diff(
         options = DiffOptions(thresholds, image_rmse, force)
     comparison = diff_records(before, after, options)
     chosen = (gate or _default_gate()).value
-    require_gate(comparison, chosen, asked=gate is not None)
+    require_gate(comparison, chosen)
     if format is not DiffFormat.GITHUB:
         report(comparison.warnings)
     _print(comparison, chosen, format)

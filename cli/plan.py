@@ -15,6 +15,7 @@ from rendergraph.cli.options import (
     GraphArgument,
     NoAliasOption,
     NoCullOption,
+    Order,
     OrderOption,
     SceneOption,
     SeedOption,
@@ -39,7 +40,7 @@ def plan(
     no_alias: NoAliasOption = False,
     no_cull: NoCullOption = False,
     full: FullOption = False,
-    order: OrderOption = "default",
+    order: OrderOption = Order.DEFAULT,
     order_seed: SeedOption = 0,
     lock: Annotated[
         Path | None, typer.Option("--lock", metavar="FILE", help="Write order, barriers and bytes to this file.")

@@ -76,6 +76,7 @@ def render(
     from rendergraph.report.tables import lifetime_table, timing_table
     from rendergraph.report.trace import require_samples
     from rendergraph.report.write import write_result
+    from rendergraph.run.image_files import write_image
     from rendergraph.run.render import RenderOptions, render_document
 
     document = load_document(graph, overrides or ())
@@ -90,6 +91,7 @@ def render(
         scene=scene,
         captures=tuple(capture or ()),
         inspect=page.add if page else None,
+        take_frame=lambda file, pixels: write_image(output / file, pixels),
         poison=poison,
         full=full,
         check_finite=check_finite,

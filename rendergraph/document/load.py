@@ -67,7 +67,8 @@ def load_document(path: str | Path, overrides: Sequence[str] = ()) -> Document:
     """Read and validate a graph file, or the shipped graph of that name; ``overrides`` are ``--set`` arguments.
 
     Raises ``RenderGraphError`` with everything found wrong (RG100 to RG131, RG200 to RG207, RG706, and RG301 to
-    RG309 for keys of one resource), in file order; its exit code is 2 when the file or an override cannot be read at all, else 1.
+    RG309 for keys of one resource), in file order; its exit code is 2 when the file or an override
+    cannot be read at all, else 1.
     """
     file = find_graph(path)
     data = read_source(file)

@@ -682,7 +682,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "error",
         "worker process {process} did not finish: {reason}",
         "run `rg render` on the graph to see what goes wrong; with less memory, measure at a smaller --size",
-        "`rg bench` measures in fresh processes. One of them ended without reporting a mistake: killed for its memory, or "
+        "`rg bench` measures in fresh processes. One of them ended without reporting a mistake: killed for "
+        "its memory, or "
         "crashed in the driver. What was measured before is kept.",
     ),
     "RG581": Message(
@@ -695,7 +696,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "warning",
         "side {side} was not steady after {frames} warm-up frames",
         "raise --warm-up, or measure when the machine does less else",
-        "Frames are run until their running median stays within a band, see `warm_up` in the record. Where it does not, "
+        "Frames are run until their running median stays within a band, see `warm_up` in the record. Where "
+        "it does not, "
         "times drift or jump, and comparing them may say more about the machine than about the graph.",
     ),
     # ---- RG6xx: the scene
@@ -916,7 +918,8 @@ MESSAGES: Final[dict[str, Message]] = {
         "warning",
         "times of {name} cannot be judged: {samples} {unit}, at least {least} are needed",
         "measure with `rg bench`, or render with more --samples",
-        "Too few samples can neither show a change nor show that there is none, so the verdict is inconclusive. Samples "
+        "Too few samples can neither show a change nor show that there is none, so the verdict is "
+        "inconclusive. Samples "
         "of one run resemble each other; where they do, more of them are needed.",
     ),
     "RG739": Message(

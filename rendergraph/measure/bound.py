@@ -1,8 +1,8 @@
 """What a frame is bound by: handing over draw calls, the device, a wait for the device in mid-frame, or the host.
 
 After Gareth Morgan, "Profiling and Optimizing WebGL Applications Using Google Chrome" (GPU Zen, 2017): tell the walls
-apart by where each side idles, and confirm by taking the suspected work away. Submitting alone does not tell: a software
-renderer shades vertices and runs dispatches inside the call.
+apart by where each side idles, and confirm by taking the suspected work away. Submitting alone does not tell: a
+software renderer shades vertices and runs dispatches inside the call.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Perturbed runs of a graph: what a frame takes once one kind of its work is taken away.
 
 Frames are handed over back to back and waited for once a round, so that host and device overlap as they do in use: a
-wait in the middle of a frame then shows, and a wait at its end, which only tells that the device is the slower one, does
-not.
+wait in the middle of a frame then shows, and a wait at its end, which only tells that the device is the slower one,
+does not.
 """
 
 from __future__ import annotations

@@ -86,13 +86,10 @@ def diff_records(before: str, after: str | None = None, options: DiffOptions | N
     return compare_records(read_record(before), read_record(after), options)
 
 
-def require_gate(comparison: Comparison, gate: str, *, asked: bool) -> None:
-    """Refuse a gate that nothing could fail: it would let everything through. Raises RenderGraphError RG737.
-
-    A gate that was not ``asked`` for is only refused where the records hold something else to judge.
-    """
+def require_gate(comparison: Comparison, gate: str) -> None:
+    """Refuse a gate that nothing can fail: it would let everything through. Raises RenderGraphError RG737."""
     judged = {"exact": {"exact", "images"}, "time": {"time"}, "all": {"exact", "images", "time"}}[gate]
-    if asked and not comparison.compared & judged:
+    if not comparison.compared & judged:
         reason = f"the records hold nothing for the gate '{gate}'"
         hint = f"they hold {', '.join(sorted(comparison.compared))}: choose another --gate, or give other records"
         raise RenderGraphError([diagnose("RG737", name=comparison.before, reason=reason, hint=hint)], exit_code=2)

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from rendergraph.report.diff_names import Matching
 from rendergraph.report.read_records import Times
-from rendergraph.report.record_models import TOTALS, BarrierModel, ResourceModel, ResourcesRecord
+from rendergraph.report.record_models import TOTALS, BarrierModel, DescModel, ResourceModel, ResourcesRecord
 
 
 class Direction(StrEnum):
@@ -85,6 +85,9 @@ def compare_counts(a: Times, b: Times, names: Matching) -> Iterator[ExactChange]
     for name, entry in a.passes.items():
         other = b.passes.get(names.after_name(name))
         if other is not None:
+            if entry.node != other.node:
+                what = f"pass {names.after_name(name)} is a {other.node} now, before a {entry.node}"
+                yield ExactChange("pass", names.after_name(name), Direction.CHANGED, entry.node, other.node, what)
             yield from _compare_counters(names.after_name(name), entry.counters, other.counters)
     if names.only_before or names.only_after:
         yield from _compare_counters("whole frame", _summed(a), _summed(b))
@@ -124,12 +127,12 @@ def _words(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _shape(desc: Mapping[str, Any]) -> str:
-    if "buffer" in desc:
-        return f"buffer of {desc['buffer']} bytes"
-    size = "x".join(str(extent) for extent in desc.get("size", ()))
-    extra = [f"{desc[key]} {key}" for key in ("layers", "mips", "samples") if desc.get(key, 1) != 1]
-    return " ".join([str(desc.get("format", "")), size, *extra])
+def _shape(desc: DescModel) -> str:
+    if desc.buffer is not None:
+        return f"buffer of {desc.buffer} bytes"
+    counts = (("layers", desc.layers), ("mips", desc.mips), ("samples", desc.samples))
+    size = "x".join(str(extent) for extent in desc.size)
+    return " ".join([desc.format, size, *(f"{count} {name}" for name, count in counts if count != 1)])
 
 
 def _compare_resource(name: str, a: ResourceModel, b: ResourceModel, names: Matching) -> Iterator[ExactChange]:

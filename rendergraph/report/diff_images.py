@@ -85,4 +85,5 @@ def _load_exr(path: Path) -> Pixels:
 
     with OpenEXR.File(str(path), separate_channels=True) as file:
         channels = file.channels()
-        return np.stack([channels[name].pixels for name in sorted(channels)], axis=-1)
+        names = sorted(channels, key=lambda name: ("RGBA".find(name), name))  # as they were written
+        return np.stack([channels[name].pixels for name in names], axis=-1)

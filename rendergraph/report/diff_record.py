@@ -33,9 +33,9 @@ def diff_record(comparison: Comparison, gate: str) -> dict[str, Any]:
             {
                 "name": entry.name or None,
                 "node": entry.node or None,
-                **{key: _number(value) for key, value in asdict(entry.change).items()},
+                **{key: _plain(value) for key, value in asdict(entry.change).items()},
                 "verdict": entry.change.verdict.value,
-                "relative": _number(entry.change.relative),
+                "relative": _plain(entry.change.relative),
             }
             for entry in comparison.times
         ],
@@ -43,7 +43,7 @@ def diff_record(comparison: Comparison, gate: str) -> dict[str, Any]:
             {
                 "name": image.name,
                 "status": image.status,
-                "error": {k: _number(v) for k, v in asdict(image.error).items()} if image.error else None,
+                "error": {k: _plain(v) for k, v in asdict(image.error).items()} if image.error else None,
             }
             for image in comparison.images
         ],
@@ -51,5 +51,7 @@ def diff_record(comparison: Comparison, gate: str) -> dict[str, Any]:
     }
 
 
-def _number(value: Any) -> Any:
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return list(value)
     return None if isinstance(value, float) and not isfinite(value) else value

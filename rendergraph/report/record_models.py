@@ -16,6 +16,8 @@ class _Part(BaseModel):
     model_config = ConfigDict(extra="ignore", strict=True, frozen=True)
 
 
+#: Text without control characters: what is printed cannot move the cursor or pass for a command of CI.
+Label = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*$", max_length=500)]
 Milliseconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Samples = list[Milliseconds]
 Count = Annotated[int, Field(ge=0)]
@@ -31,37 +33,49 @@ class SampledModel(_Part):
 class ClockModel(_Part):
     """The clock the times were read from."""
 
-    name: str
+    name: Label
 
 
 class DeviceModel(_Part):
     """Who ran it."""
 
-    renderer: str
-    version: str = ""
-    driver: str = ""
-    cpu: str = ""
+    renderer: Label
+    version: Label = ""
+    driver: Label = ""
+    cpu: Label = ""
     threads: int | None = None
 
 
 class PassModel(_Part):
     """A pass with its times and exact counts; ``None`` for a count that only the device knows."""
 
-    name: str
-    node: str = ""
+    name: Label
+    node: Label = ""
     ms: SampledModel = SampledModel()
-    counters: dict[str, Count | None] = {}
+    counters: dict[Label, Count | None] = {}
+
+
+class DescModel(_Part):
+    """A resource's shape: of a texture, or a buffer's bytes."""
+
+    format: Label = ""
+    size: list[Count] = []
+    layers: Count = 1
+    mips: Count = 1
+    samples: Count = 1
+    target: Label = ""
+    buffer: Count | None = None
 
 
 class ResourceModel(_Part):
     """A resource, its shape and where it lives."""
 
-    name: str
-    kind: str
+    name: Label
+    kind: Label
     bytes: Count
-    desc: dict[str, Any]
-    first: str
-    last: str
+    desc: DescModel
+    first: Label
+    last: Label
     slot: int | None = None
 
 
@@ -74,26 +88,25 @@ class SlotModel(_Part):
 class HazardModel(_Part):
     """Why a barrier is there."""
 
-    resource: str
+    resource: Label
 
 
 class BarrierModel(_Part):
     """A barrier: ``glMemoryBarrier`` bits before a sub-pass."""
 
-    before: str
+    before: Label
     bits: Count
     texture_barrier: bool
-    names: list[str] = []
+    names: list[Label] = []
     hazards: list[HazardModel] = []
 
 
 class ResourcesRecord(_Part):
     """``resources.json``, schema ``rendergraph.resources/1``."""
 
-    title: str = ""
     size: Size
-    order: list[str]
-    culled: list[str]
+    order: list[Label]
+    culled: list[Label]
     totals: dict[str, Any]
     resources: list[ResourceModel]
     slots: list[SlotModel]
@@ -118,13 +131,12 @@ TOTALS = ("used", "load", "placed", "view_pool", "exact_pool", "unshared")
 class TimingRecord(_Part):
     """``timing.json``, schema ``rendergraph.timing/1``, and a side of a bench file."""
 
-    title: str = ""
     clock: ClockModel
     device: DeviceModel
     size: Size
     frame_ms: SampledModel = SampledModel()
     passes: list[PassModel]
-    steady_state: dict[str, Count] = {}
+    steady_state: dict[Label, Count] = {}
     resources: ResourcesRecord | None = None
 
     @model_validator(mode="after")
@@ -137,7 +149,7 @@ class BlockSideModel(_Part):
     """Consecutive frames of one side: whole frames, and each pass."""
 
     frame_ms: Samples = []
-    passes: dict[str, Samples] = {}
+    passes: dict[Label, Samples] = {}
 
 
 class BlockModel(_Part):

@@ -47,10 +47,10 @@ def write_result(
     was not specialised on its scene.
     """
     files = []
-    for name, pixels in result.images.items():
-        path = folder / result.files[name]
-        write_image(path, pixels)
-        files.append(path)
+    for name, file in result.files.items():
+        if name in result.images:
+            write_image(folder / file, result.images[name])
+        files.append(folder / file)
     for name, pixels in result.captures.items():
         files += write_capture(folder, result.plan.graph.resources[name], pixels)
     timing = timing_record(result, document.model.title)

@@ -28,7 +28,9 @@ WARM_UP = 1
 class RenderOptions:
     """How to run a document. ``size``, ``frames`` and ``scene`` replace the file's own; ``samples`` is the number of
     extra frames timed after the images are taken. ``inspect`` is called with every texture of
-    one more frame, so that reading them back disturbs no figure.
+    one more frame, so that reading them back disturbs no figure. ``take_frame`` is handed the file name and pixels of
+    every ``{frame}`` output as soon as it is there, and the result keeps none of them: a long run needs no more memory
+    than a short one, and an interrupted one has written what it finished.
     """
 
     size: tuple[int, int] | None = None
@@ -37,6 +39,7 @@ class RenderOptions:
     scene: str | None = None
     captures: tuple[str, ...] = ()
     inspect: Inspect | None = None
+    take_frame: Callable[[str, Pixels], None] | None = None
     poison: bool = False
     full: bool = False
     check_finite: bool = False
@@ -103,8 +106,12 @@ def run_plan(
                 first_ns, after_first = time.perf_counter_ns() - start, device.counters.snapshot()
             for name, file in files.items():
                 if "{frame}" in file:
-                    key = f"{name}@{index}"
-                    images[key], names[key] = runner.read(name, index), file.replace("{frame}", f"{index:04d}")
+                    key, pixels = f"{name}@{index}", runner.read(name, index)
+                    names[key] = file.replace("{frame}", f"{index:04d}")
+                    if options.take_frame is not None:
+                        options.take_frame(names[key], pixels)
+                    else:
+                        images[key] = pixels
                 elif index == count - 1:
                     images[name], names[name] = runner.read(name, index), file
         warm_up = WARM_UP if options.samples else 0

@@ -90,7 +90,8 @@ class DeviceFacts:
 class FrameResult:
     """A finished run. ``images`` are the outputs and ``captures`` the intermediate targets asked for, by resource name
     (``{frame}`` outputs by ``name@frame``), each ``[height, width, channels]`` with the first row at the bottom.
-    ``files`` are the images' file names inside the output folder.
+    ``files`` are the images' file names inside the output folder, those that ``RenderOptions.take_frame`` was handed
+    too.
     """
 
     plan: Plan

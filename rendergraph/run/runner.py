@@ -145,7 +145,7 @@ class Runner:
     def time_frames(
         self, first: int, count: int, clock: Clock, progress: Callable[[str, int, int], None]
     ) -> tuple[tuple[int, ...], tuple[int, ...], tuple[StepTimes, ...]]:
-        """Run ``count`` whole frames and ``count`` pass by pass under the clock, in turn, from frame ``first`` on: times
+        """Run ``count`` whole frames and ``count`` pass by pass under the clock, in turn from frame ``first`` on: times
         of the whole frames, the part of them until all was handed over, and of the sub-passes.
 
         Nanoseconds. Timing a pass on its own ends its overlap with its neighbours, so both figures are kept.

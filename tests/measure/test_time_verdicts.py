@@ -157,7 +157,12 @@ def test_few_blocks_are_inconclusive_however_many_frames() -> None:
 
 def test_no_samples() -> None:
     change = stored(of(np.array([])), of(np.ones(20)))
-    assert (change.verdict, change.reason, change.before, change.shift) == (Verdict.INCONCLUSIVE, "no_samples", None, None)
+    assert (change.verdict, change.reason, change.before, change.shift) == (
+        Verdict.INCONCLUSIVE,
+        "no_samples",
+        None,
+        None,
+    )
     empty = Runs((), ())
     assert compare_blocks({"frame": empty}, {"frame": empty}, USUAL)["frame"].reason == "no_samples"
 

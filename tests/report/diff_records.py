@@ -29,16 +29,27 @@ def timing(
         "schema": "rendergraph.timing/1",
         "title": "made up",
         "clock": {"name": "finish_wall"},
-        "device": {"renderer": "llvmpipe", "version": "4.5 Mesa 22.3.6", "driver": "Mesa 22.3.6", "cpu": "c", "threads": 2},
+        "device": {
+            "renderer": "llvmpipe",
+            "version": "4.5 Mesa 22.3.6",
+            "driver": "Mesa 22.3.6",
+            "cpu": "c",
+            "threads": 2,
+        },
         "size": [64, 36],
         "frame_ms": {"samples": samples(3.0) if frame is None else list(frame)},
         "passes": [
-            {"name": name, "node": f"{name}_node", "ms": {"samples": list(values)}, "counters": {"draws": 3, "groups": None}}
+            {
+                "name": name,
+                "node": f"{name}_node",
+                "ms": {"samples": list(values)},
+                "counters": {"draws": 3, "groups": None},
+            }
             for name, values in passes.items()
         ],
         "steady_state": {"objects_created": 0, "programs_compiled": 0, "bytes_uploaded": 0},
         **changes,
-    }  # fmt: skip
+    }
 
 
 def resources(*overrides: str, **options: Any) -> dict[str, Any]:
@@ -64,7 +75,7 @@ def bench(slowdown: float = 1.0, *, sides: str = "AB", processes: int = 5, block
     return {
         "schema": "rendergraph.bench/1",
         "graphs": ["a.yaml", "b.yaml"][: len(sides)],
-        "sides": {name: facts for name in sides},
+        "sides": dict.fromkeys(sides, facts),
         "blocks": [
             {"process": p, "order": sides, **{name: side(slowdown if name == "B" else 1.0) for name in sides}}
             for p in range(processes)

@@ -118,3 +118,24 @@ def test_objects_carry_the_graphs_names() -> None:
     assert {"Frame", "Instances", "transient buffers"} <= buffers
     assert "light.light" in framebuffers
     assert any("deferred_lighting.frag" in label for label in programs)
+
+
+def test_frames_are_handed_over_as_they_come_and_not_kept(tmp_path: Path) -> None:
+    (tmp_path / "g.yaml").write_text(COUNTER.replace("now_{frame}.npy", '"now_{frame}.npy"').replace('""', '"'))
+    (tmp_path / "step.frag").write_text(STEP.lstrip())
+    taken: dict[str, float] = {}
+
+    def take(file: str, pixels: np.ndarray) -> None:
+        taken[file] = float(pixels.max())
+        if len(taken) == 3:
+            raise KeyboardInterrupt
+
+    options = RenderOptions(frames=5, samples=0, take_frame=take)
+    with pytest.raises(KeyboardInterrupt):
+        render_document(load_document(tmp_path / "g.yaml"), options)
+    assert taken == {"now_0000.npy": 1.0, "now_0001.npy": 3.0, "now_0002.npy": 7.0}
+    result = render_document(
+        load_document(tmp_path / "g.yaml"), RenderOptions(frames=2, samples=0, take_frame=lambda *_: None)
+    )
+    assert not result.images
+    assert list(result.files.values()) == ["now_0000.npy", "now_0001.npy"]
