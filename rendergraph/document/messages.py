@@ -677,7 +677,7 @@ MESSAGES: Final[dict[str, Message]] = {
     "RG573": Message(
         "error", "cannot write to standard output: {reason}", "redirect it elsewhere, or free space where it goes"
     ),
-    "RG574": Message("error", "no frame was timed, so there is nothing to trace", "ask for --samples 1 or more"),
+    "RG575": Message("error", "no frame was timed, so there is nothing to trace", "ask for --samples 1 or more"),
     "RG580": Message(
         "error",
         "worker process {process} did not finish: {reason}",

@@ -29,7 +29,7 @@ Span = tuple[int, int]
 def trace_record(result: FrameResult, title: str = "") -> dict[str, Any]:
     """The trace as JSON-ready data: a frame a timed sample, times in microseconds since the first.
 
-    :raises RenderGraphError: RG574 when the run timed no frame.
+    :raises RenderGraphError: RG575 when the run timed no frame.
     """
     require_samples(len(result.times.frames))
     steps = {step.name: step for step in result.times.steps}
@@ -58,9 +58,9 @@ def trace_record(result: FrameResult, title: str = "") -> dict[str, Any]:
 
 
 def require_samples(samples: int) -> None:
-    """Raise RenderGraphError RG574 for a trace of no timed frame."""
+    """Raise RenderGraphError RG575 for a trace of no timed frame."""
     if samples < 1:
-        raise RenderGraphError([diagnose("RG574")], exit_code=2)
+        raise RenderGraphError([diagnose("RG575")], exit_code=2)
 
 
 def write_trace(path: Path, result: FrameResult, title: str = "") -> None:

@@ -33,5 +33,5 @@ def test_looking_at_targets_changes_no_count(rg: Rg, tmp_path: Path) -> None:
 def test_a_trace_without_samples_is_refused_before_rendering(rg: Rg, tmp_path: Path) -> None:
     outcome = rg("render", "tonemap", "--trace", "--samples", "0", "-o", str(tmp_path))
     assert outcome.code == 2
-    assert "RG574" in outcome.err
+    assert "RG575" in outcome.err
     assert not list(tmp_path.iterdir())

@@ -108,7 +108,7 @@ def test_live_bytes_reach_load_and_end_at_nothing(name: str) -> None:
 def test_a_run_without_timed_frames_is_refused() -> None:
     with pytest.raises(RenderGraphError) as caught:
         trace_record(made_up_result(made_up_plan(), samples=0))
-    assert caught.value.diagnostics[0].code == "RG574"
+    assert caught.value.diagnostics[0].code == "RG575"
     assert caught.value.exit_code == 2
 
 
