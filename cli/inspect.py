@@ -15,12 +15,12 @@ from rendergraph.cli.options import (
     GraphArgument,
     NoAliasOption,
     NoCullOption,
+    Order,
     OrderOption,
     SceneOption,
     SeedOption,
     SetOption,
     SizeOption,
-    parse_order,
     parse_size,
 )
 
@@ -76,7 +76,7 @@ def plan(
     no_alias: NoAliasOption = False,
     no_cull: NoCullOption = False,
     full: FullOption = False,
-    order: OrderOption = "default",
+    order: OrderOption = Order.DEFAULT,
     order_seed: SeedOption = 0,
     format: FormatOption = Format.TEXT,
 ) -> None:
@@ -90,7 +90,7 @@ def plan(
     from rendergraph.run.plan_document import plan_document
 
     document = load_document(graph, overrides or ())
-    options = PlanOptions(alias=not no_alias, cull=not no_cull, order=parse_order(order), seed=order_seed)
+    options = PlanOptions(alias=not no_alias, cull=not no_cull, order=order.value, seed=order_seed)
     planned = plan_document(document, options, scene=scene, size=parse_size(size), frames=frames, full=full)
     report(planned.warnings)
     record = resources_record(planned.plan, document.model.title)
@@ -106,7 +106,10 @@ def graph(
     drawing: Annotated[Drawing, typer.Option("--format", help="How to draw.")] = Drawing.MERMAID,
     subpasses: Annotated[bool, typer.Option("--subpasses", help="Draw sub-passes instead of passes.")] = False,
 ) -> None:
-    """Draw a graph: passes and resources, as Mermaid or DOT text or as an SVG picture."""
+    """Draw a graph: passes and resources, as Mermaid or DOT text or as an SVG picture.
+
+    The scene is not loaded: passes are drawn as for a scene with every feature, and none is culled.
+    """
     from rendergraph.cli.console import write_text
     from rendergraph.document.load import load_document
     from rendergraph.plan.plan import PlanOptions

@@ -16,6 +16,14 @@ class Format(StrEnum):
     JSON = "json"
 
 
+class Order(StrEnum):
+    """Which of the legal orders the passes run in."""
+
+    DEFAULT = "default"
+    MEMORY = "memory"
+    RANDOM = "random"
+
+
 GraphArgument = Annotated[str, typer.Argument(metavar="GRAPH", help="A graph file, or a shipped graph's name.")]
 SetOption = Annotated[
     list[str] | None,
@@ -34,10 +42,7 @@ FullOption = Annotated[bool, typer.Option("--full", help="Do not specialise on t
 NoAliasOption = Annotated[bool, typer.Option("--no-alias", help="Give every target memory of its own.")]
 NoCullOption = Annotated[bool, typer.Option("--no-cull", help="Run passes that nothing reads.")]
 OrderOption = Annotated[
-    str,
-    typer.Option(
-        "--order", metavar="NAME", help="Pass order: default, memory (search for the smallest peak) or random."
-    ),
+    Order, typer.Option("--order", help="Pass order; memory searches for the smallest peak, random takes --order-seed.")
 ]
 SeedOption = Annotated[int, typer.Option("--order-seed", min=0, help="Seed of the random order.")]
 
@@ -55,10 +60,3 @@ def parse_size(text: str | None) -> tuple[int, int] | None:
     if not all(1 <= extent <= MAX_SIZE for extent in size):
         raise typer.BadParameter(f"{text}: each side must be 1 to {MAX_SIZE} pixels", param_hint="--size")
     return size
-
-
-def parse_order(name: str) -> str:
-    """A known order's name. Raises ``typer.BadParameter``."""
-    if name not in ("default", "memory", "random"):
-        raise typer.BadParameter(f"{name!r} is not default, memory or random", param_hint="--order")
-    return name
