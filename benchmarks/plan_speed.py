@@ -4,8 +4,8 @@
 
 The graph is a long frame of effect chains: depth and normals feed screen-space passes, compute passes build lists that
 later passes consume, every tenth pass adds to a shared target, every fiftieth reads history. Both are timed in one run,
-interleaved, and the smallest of several repeats is shown: the ratio is what the project promises (at most 2 for 1,000
-passes, expansion included; this measures the planner from the expanded graph to the verified plan).
+and the smallest of several repeats is shown. This is the planner alone, from the expanded graph to the verified plan;
+document_speed.py measures what the project promises, which includes expansion (at most 2 for 1,000 passes).
 """
 
 from __future__ import annotations

@@ -30,7 +30,10 @@ def graph(
     drawing: Annotated[Drawing, typer.Option("--format", help="How to draw.")] = Drawing.MERMAID,
     subpasses: Annotated[bool, typer.Option("--subpasses", help="Draw sub-passes instead of passes.")] = False,
 ) -> None:
-    """Draw a graph: passes and resources, as Mermaid or DOT text or as an SVG picture."""
+    """Draw a graph: passes and resources, as Mermaid or DOT text or as an SVG picture.
+
+    The scene is not loaded: passes are drawn as for a scene with every feature, and none is culled.
+    """
     from rendergraph.cli.console import write_text
     from rendergraph.document.load import load_document
     from rendergraph.plan.plan import PlanOptions

@@ -60,10 +60,3 @@ def parse_size(text: str | None) -> tuple[int, int] | None:
     if not all(1 <= extent <= MAX_SIZE for extent in size):
         raise typer.BadParameter(f"{text}: each side must be 1 to {MAX_SIZE} pixels", param_hint="--size")
     return size
-
-
-def parse_order(name: str) -> str:
-    """A known order's name. Raises ``typer.BadParameter``."""
-    if name not in tuple(Order):
-        raise typer.BadParameter(f"{name!r} is not default, memory or random", param_hint="--order")
-    return name

@@ -3,7 +3,7 @@
     python -m benchmarks.peers [--assets DIR] [--blocks N] [--only plain|shadowed|default]
 
 Installs the two peers apart, under build/peers, on the first run. The room is `fireplace_room/fireplace_room.glb` in
-``--assets``, else in $RG_ASSETS, else in ../shared/assets beside the repository; without it nothing is measured.
+``--assets``, else in $RG_ASSETS, else in an asset folder beside the checkout; without it nothing is measured.
 Pictures, times and logs are left in build/peers/results. See docs/peers.md for what is compared and how.
 """
 

@@ -32,7 +32,6 @@ class Clear(Node[ClearParams]):
             layers=None,
         ),
     }
-    exact = True
 
     def build(self, b: Builder) -> None:
         """One clear."""

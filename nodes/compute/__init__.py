@@ -7,15 +7,8 @@ from typing import Annotated, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from rendergraph.node.builder import (
-    Binding,
-    Builder,
-    load_image,
-    store_image,
-    update_buffer,
-    update_image,
-    write_buffer,
-)
+from rendergraph.node.bindings import Binding, load_image, store_image, update_buffer, update_image, write_buffer
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node
 from rendergraph.node.params import GraphFile, knob
 from rendergraph.node.user_shader import UserShaderParams, misuse, require_ports, require_suffix
@@ -69,7 +62,6 @@ class Compute(Node[ComputeParams]):
     """
 
     open_ports = True
-    exact = True
 
     def modifies(self, port: str) -> bool:
         """Outputs that are updated."""

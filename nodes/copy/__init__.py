@@ -34,7 +34,6 @@ class Copy(Node[CopyParams]):
 
     inputs = {"source": Port("What is copied.", ANY_FORMAT, buffer=True, samples=ANY_SAMPLES, layers=None)}
     outputs = {"destination": Port("Where it goes.", ANY_FORMAT, buffer=True, samples=ANY_SAMPLES, layers=None)}
-    exact = True
 
     def build(self, b: Builder) -> None:
         """A copy, and mip levels when asked for."""

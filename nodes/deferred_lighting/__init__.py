@@ -3,30 +3,17 @@
 from __future__ import annotations
 
 from rendergraph.document.formats import DEPTH
-from rendergraph.node.builder import Builder, color, sample
+from rendergraph.node.bindings import color, sample
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
-from rendergraph.node.params import Params, knob
-from rendergraph.nodes.deferred_lighting.light_model import SHADOW_PORTS, light_model
+from rendergraph.nodes.deferred_lighting.light_model import SHADOW_PORTS, ShadowParams, light_model
 from rendergraph.nodes.gbuffer import BASE_COLOR_FORMATS, EMISSIVE_FORMATS, MATERIAL_FORMATS
 from rendergraph.nodes.gbuffer.packing import NORMAL_FORMATS, normal_defines
 
 RADIANCE_FORMATS = ("rgba16f", "rgba32f", "r11g11b10f")
 
 
-class DeferredLightingParams(Params):
-    """What the light costs beside the lights themselves."""
-
-    shadow_taps: int = knob(
-        3,
-        "Width of the shadow filter: a box of this many bilinear taps a side.",
-        unit="texel",
-        ge=1,
-        le=9,
-        accurate="up",
-    )
-
-
-class DeferredLighting(Node[DeferredLightingParams]):
+class DeferredLighting(Node[ShadowParams]):
     """Lights every pixel of a G-buffer by every light: the exact reference for light culling."""
 
     inputs = {

@@ -41,6 +41,6 @@ void main() {
 #if OCCLUSION
     occlusion *= texture(u_occlusion, v_uv).r;
 #endif
-    vec3 position = world_position(v_uv, depth);
+    vec3 position = world_position(gl_FragCoord.xy / vec2(textureSize(u_depth, 0)), depth);
     out_color = vec4(shade_surface(position, normal, base_color, material.r, material.g, occlusion, emissive), 1.0);
 }

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from rendergraph.document.messages import RenderGraphError, diagnose
-from rendergraph.node.builder import Binding, Builder, read_buffer, sample
+from rendergraph.node.bindings import Binding, read_buffer, sample
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Port
+from rendergraph.node.params import Params, knob
 
 #: Input ports of a node that takes the sun's shadow.
 SHADOW_PORTS = {
@@ -12,6 +14,19 @@ SHADOW_PORTS = {
                        formats=("d32f", "d24", "d16"), optional=True, layers=None),
     "cascades": Port("The cascades of the shadow map.", buffer=True, optional=True),
 }  # fmt: skip
+
+
+class ShadowParams(Params):
+    """How the sun's shadow is filtered: the parameters of every node that takes :data:`SHADOW_PORTS`."""
+
+    shadow_taps: int = knob(
+        3,
+        "Width of the shadow filter: a box of this many bilinear taps a side.",
+        unit="texel",
+        ge=1,
+        le=9,
+        accurate="up",
+    )
 
 
 def light_model(b: Builder, step: str, shadow_taps: int) -> tuple[dict[str, int], dict[str, Binding]]:

@@ -6,7 +6,8 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from rendergraph.node.builder import Attachment, Builder, depth
+from rendergraph.node.bindings import Attachment, depth
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node
 from rendergraph.node.params import GraphFile, knob
 from rendergraph.node.user_shader import UserRasterParams, misuse, require_ports, require_suffix
@@ -77,7 +78,6 @@ class Draw(Node[DrawParams]):
     """
 
     open_ports = True
-    exact = True
 
     def modifies(self, port: str) -> bool:
         """Outputs kept, or blended over."""

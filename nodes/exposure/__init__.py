@@ -7,7 +7,8 @@ from typing import Literal
 from pydantic import model_validator
 
 from rendergraph.document.formats import HDR
-from rendergraph.node.builder import Binding, Builder, read_buffer, sample, update_buffer, write_buffer
+from rendergraph.node.bindings import Binding, read_buffer, sample, update_buffer, write_buffer
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
 from rendergraph.nodes.exposure.buffer import require_exposure

@@ -6,11 +6,12 @@ from typing import Literal
 
 from rendergraph.document.formats import DEPTH
 from rendergraph.document.messages import RenderGraphError, diagnose
-from rendergraph.node.builder import Attachment, Builder, color, depth
+from rendergraph.node.bindings import Attachment, color, depth
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
-from rendergraph.node.params import Params, knob
+from rendergraph.node.params import knob
 from rendergraph.nodes.deferred_lighting import RADIANCE_FORMATS
-from rendergraph.nodes.deferred_lighting.light_model import SHADOW_PORTS, light_model
+from rendergraph.nodes.deferred_lighting.light_model import SHADOW_PORTS, ShadowParams, light_model
 from rendergraph.nodes.gbuffer.geometry import depth_prepass, scene_program, solid_queues
 from rendergraph.plan.graph import PREMULTIPLIED, Blend, DrawScene, State
 
@@ -18,7 +19,7 @@ DEPTH_FORMATS = ("d32f", *sorted(DEPTH - {"d32f"}))
 BLACK = (0.0, 0.0, 0.0, 1.0)
 
 
-class ForwardShadingParams(Params):
+class ForwardShadingParams(ShadowParams):
     """What is drawn, how visibility is resolved, and how the sun's shadow is filtered."""
 
     queues: Literal["opaque", "transparent", "all"] = knob(
@@ -26,14 +27,6 @@ class ForwardShadingParams(Params):
         "opaque (with alpha-tested), transparent (over an existing image and depth), or all: one after the other.",
     )
     prepass: Literal["off", "full"] = knob("off", "full: draw depth alone first, so that every pixel is shaded once.")
-    shadow_taps: int = knob(
-        3,
-        "Width of the shadow filter: a box of this many bilinear taps a side.",
-        unit="texel",
-        ge=1,
-        le=9,
-        accurate="up",
-    )
 
 
 class ForwardShading(Node[ForwardShadingParams]):
@@ -83,10 +76,12 @@ class ForwardShading(Node[ForwardShadingParams]):
             return
         defines, bind = light_model(b, queues[0], self.params.shadow_taps)
         normal_map = b.requires("normal_mapped", queues[0])
+        width, height = b.size(b.output("color"))
         for queue in queues:
             first = queue == queues[0] and queue != "blended"
             blend: tuple[Blend | None, ...] = (PREMULTIPLIED,) if queue == "blended" else ()
-            test = "closer_equal" if queue == "blended" else "equal" if prepass else "closer"
+            # At equal depth the last draw wins, as it does after a prepass and in a G-buffer.
+            test = "equal" if prepass and queue != "blended" else "closer_equal"
             b.raster(
                 queue,
                 scene_program(
@@ -101,6 +96,7 @@ class ForwardShading(Node[ForwardShadingParams]):
                 bind=bind,
                 work=DrawScene((queue,)),
                 state=State(depth_test=test, blend=blend),
+                uniforms={"u_size": (float(width), float(height))},
             )
 
     def _check_depth(self, b: Builder, transparent_only: bool) -> None:

@@ -31,7 +31,6 @@ class Fullscreen(Node[FullscreenParams]):
     """
 
     open_ports = True
-    exact = True
 
     def modifies(self, port: str) -> bool:
         """Outputs kept, or blended over."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rendergraph.node.builder import Builder, color, sample
+from rendergraph.node.bindings import color, sample
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Literal
 
 from rendergraph.document.formats import DEPTH
-from rendergraph.node.builder import Attachment, Builder, color, depth
+from rendergraph.node.bindings import Attachment, color, depth
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
 from rendergraph.nodes.gbuffer.geometry import depth_prepass, scene_program, solid_queues
@@ -46,7 +47,7 @@ class Gbuffer(Node[GbufferParams]):
     needs_scene = True
 
     def build(self, b: Builder) -> None:
-        """Optional prepass, then the opaque queue, then the alpha-tested one."""
+        """Optional prepass, then the opaque queue, then the alpha-tested one; at equal depth the last draw wins."""
         queues = solid_queues(b)
         ports = ["normal", "base_color", "material"]
         if "emissive" in b.outputs:
@@ -74,7 +75,7 @@ class Gbuffer(Node[GbufferParams]):
                 ],
                 depth=_depth(b.output("depth"), prepass, first),
                 work=DrawScene((queue,)),
-                state=State(depth_test="equal" if prepass else "closer"),
+                state=State(depth_test="equal" if prepass else "closer_equal"),
             )
 
     def _nothing(self, b: Builder, ports: list[str]) -> None:

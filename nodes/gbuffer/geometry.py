@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rendergraph.node.builder import Builder, depth
+from rendergraph.node.bindings import depth
+from rendergraph.node.builder import Builder
 from rendergraph.plan.graph import DrawScene, Program, State
 
 ALL_SLOTS = 0b11111  # of Material.textures, shaders/scene.glsl

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from rendergraph.document.messages import RenderGraphError, diagnose
-from rendergraph.node.builder import Builder, depth, read_buffer, write_buffer
+from rendergraph.node.bindings import depth, read_buffer, write_buffer
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
 from rendergraph.nodes.gbuffer.geometry import scene_program, solid_queues

@@ -6,7 +6,8 @@ import math
 from typing import Literal
 
 from rendergraph.document.formats import DEPTH, HDR
-from rendergraph.node.builder import Attachment, Builder, color, depth
+from rendergraph.node.bindings import Attachment, color, depth
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
 from rendergraph.plan.graph import DrawArrays, State

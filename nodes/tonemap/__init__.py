@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Literal
 
 from rendergraph.document.formats import HDR
-from rendergraph.node.builder import Binding, Builder, color, read_buffer, sample
+from rendergraph.node.bindings import Binding, color, read_buffer, sample
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
 from rendergraph.nodes.exposure.buffer import require_exposure

@@ -10,6 +10,8 @@ import importlib.util
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from importlib import metadata
+from types import ModuleType
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -75,7 +77,16 @@ def _package(name: str) -> CheckResult:
         module = importlib.import_module(name)
     except Exception as error:  # a broken binary package raises whatever it likes
         return CheckResult(f"package {name}", False, str(error), "pip install --force-reinstall rendergraph")
-    return CheckResult(f"package {name}", True, str(getattr(module, "__version__", "present")))
+    return CheckResult(f"package {name}", True, _version(module))
+
+
+def _version(module: ModuleType) -> str:
+    if hasattr(module, "__version__"):
+        return str(module.__version__)
+    try:
+        return metadata.version(module.__name__)
+    except metadata.PackageNotFoundError:
+        return "present"
 
 
 def _extra(module: str, extra: str, adds: str) -> CheckResult:
@@ -115,9 +126,9 @@ def _device(index: int, device: Device) -> Iterator[CheckResult]:
     from rendergraph.device.clock import choose_clock
 
     info = device.info
-    yield CheckResult(
-        f"device {index}", True, f"{info.renderer}, {info.vendor}, OpenGL {info.driver}, GLSL {info.glsl}"
-    )
+    kind = "software" if info.is_software else "hardware"
+    facts = f"{info.renderer}, {info.vendor}, OpenGL {info.driver}, GLSL {info.glsl}, {kind} rendering"
+    yield CheckResult(f"device {index}", True, facts)
     short = [
         f"{name} {info.limits[name]} < {least}" for name, least in NEEDED_LIMITS.items() if info.limits[name] < least
     ]

@@ -341,7 +341,7 @@ MESSAGES: Final[dict[str, Message]] = {
         "The parameters of this pass do not fit what is connected to it.",
     ),
     "RG226": Message("error", "the frame's {what} is {value}", "choose one from 1 to {limit}"),
-    "RG227": Message("error", "there is no code {name}", "{hint}"),
+    "RG227": Message("error", "there is no code {name}", "give a code as a message shows it, such as RG203"),
     "RG228": Message("error", "the graph has no pass, sub-pass or resource '{name}'", "{hint}"),
     "RG229": Message(
         "error",
@@ -700,6 +700,9 @@ MESSAGES: Final[dict[str, Message]] = {
         "it does not, "
         "times drift or jump, and comparing them may say more about the machine than about the graph.",
     ),
+    "RG574": Message(
+        "error", "cannot make {path}: there is no folder {folder}", "make the folder first, or check its name"
+    ),
     # ---- RG6xx: the scene
     # -- glTF files (`where` is the file and the JSON path in it)
     "RG601": Message("error", "{where}: cannot read {path}: {reason}", "check the path and its permissions"),
@@ -789,6 +792,11 @@ MESSAGES: Final[dict[str, Message]] = {
     ),
     "RG656": Message(
         "note", "the scene '{source}' has nothing to draw", "check that the file holds meshes and a scene"
+    ),
+    "RG657": Message(
+        "note",
+        "the scene '{scene}' has a sun and no ambient light: a default sky lights what the sun does not reach",
+        "give `lights: {{ambient: {{sky: [...], ground: [...]}}}}` to choose it; zeros for none",
     ),
     # ---- RG7xx: accuracy and budget
     # -- budgets

@@ -2,32 +2,42 @@
 
 from __future__ import annotations
 
+import errno
 import keyword
 import re
+import stat
 from pathlib import Path
 from string import Template
 
 from rendergraph.document.messages import RenderGraphError, diagnose
-from rendergraph.document.whole_files import whole_file
+from rendergraph.document.whole_files import cannot_write, whole_file
 
 TEMPLATES = Path(__file__).resolve().parent.parent / "templates"
 
 
 def write_graph(path: Path) -> list[Path]:
-    """Write a small graph that renders; the suffix becomes .yaml. Raises RenderGraphError RG571 when it exists."""
+    """Write a small graph that renders; the suffix becomes .yaml.
+
+    Raises RenderGraphError RG560 (cannot be written), RG571 (exists), RG574 (its folder does not exist).
+    """
     path = path if path.suffix in (".yaml", ".yml") else path.with_name(path.name + ".yaml")
     # A file's name may hold anything; what stands in the YAML may not.
     stem = re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem)[:100]
     title = re.sub(r"[\W_]+", " ", path.stem).strip()[:100].capitalize() or "Graph"
+    _require_folder(path.parent, path)
     _write({path: TEMPLATES / "graph.yaml"}, file=stem + path.suffix, stem=stem, title=title)
     return [path]
 
 
 def write_node(name: str, folder: Path) -> list[Path]:
-    """Write a package ``folder/name`` with one node. Raises RenderGraphError RG571 (exists), RG572 (not a name)."""
+    """Write a package ``folder/name`` with one node.
+
+    Raises RenderGraphError RG560 (cannot be written), RG571 (exists), RG572 (not a name), RG574 (no such folder).
+    """
     if not re.fullmatch(r"[a-z][a-z0-9_]{0,40}", name) or keyword.iskeyword(name):
         raise RenderGraphError([diagnose("RG572", name=name)], exit_code=2)
     root, source = folder / name, TEMPLATES / "node"
+    _require_folder(folder, root)
     package = root / f"rendergraph_{name}"
     files = {
         root / "pyproject.toml": source / "pyproject.toml",
@@ -42,9 +52,25 @@ def write_node(name: str, folder: Path) -> list[Path]:
     return list(files)
 
 
+def _require_folder(folder: Path, path: Path) -> None:
+    """A mistyped folder is not made on the way."""
+    try:
+        mode = folder.stat().st_mode
+    except FileNotFoundError:
+        raise RenderGraphError([diagnose("RG574", path=str(path), folder=str(folder))], exit_code=2) from None
+    except OSError as error:
+        raise cannot_write(path, error) from None
+    if not stat.S_ISDIR(mode):
+        raise cannot_write(path, NotADirectoryError(errno.ENOTDIR, ""))
+
+
 def _write(files: dict[Path, Path], **values: str) -> None:
     for target in files:
-        if target.exists():
+        try:
+            exists = target.exists()
+        except OSError as error:
+            raise cannot_write(target, error) from None
+        if exists:
             raise RenderGraphError([diagnose("RG571", path=str(target))], exit_code=2)
     for target, source in files.items():
         with whole_file(target) as temporary:

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from rendergraph.node.bindings import Attachment, Binding, Color4, attachment_access, bound_accesses
 from rendergraph.plan.graph import (
     Access,
     BufferDesc,
@@ -35,116 +36,6 @@ from rendergraph.plan.graph import (
 from rendergraph.scene.features import SceneFeatures
 
 SHADERS = Path(__file__).resolve().parent.parent / "shaders"
-
-Color4 = tuple[float, float, float, float]
-
-
-# ---------------------------------------------------------------- bindings: what a shader sees under a name
-
-
-@dataclass(frozen=True, slots=True)
-class Binding:
-    """How a shader uses a resource; made by the functions below, for ``bind=`` of the builder's methods."""
-
-    resource: str
-    usage: Usage
-    load: bool = True
-    mip: int | None = None
-    layer: int | None = None
-    aspect: str = "color"
-    filter: str = "nearest"
-    wrap: str = "clamp"
-
-
-def sample(
-    resource: str,
-    filter: str = "nearest",
-    *,
-    wrap: str = "clamp",
-    mip: int | None = None,
-    layer: int | None = None,
-    aspect: str = "color",
-) -> Binding:
-    """A texture read through a sampler. ``filter``: nearest, linear, mipmap, or compare (shadow sampler)."""
-    return Binding(resource, Usage.SAMPLED, mip=mip, layer=layer, aspect=aspect, filter=filter, wrap=wrap)
-
-
-def load_image(resource: str, *, mip: int = 0, layer: int | None = None) -> Binding:
-    """An image read with ``imageLoad``."""
-    return Binding(resource, Usage.IMAGE_READ, mip=mip, layer=layer)
-
-
-def store_image(resource: str, *, mip: int | None = 0, layer: int | None = None, partial: bool = False) -> Binding:
-    """An image written with ``imageStore``; ``partial`` when texels may be left as they were."""
-    return Binding(resource, Usage.IMAGE_WRITE, load=partial, mip=mip, layer=layer)
-
-
-def update_image(resource: str, *, mip: int = 0, layer: int | None = None) -> Binding:
-    """An image both read and written, or used with atomics."""
-    return Binding(resource, Usage.IMAGE_UPDATE, mip=mip, layer=layer)
-
-
-def read_buffer(resource: str) -> Binding:
-    """A shader storage block, read only."""
-    return Binding(resource, Usage.STORAGE_READ)
-
-
-def write_buffer(resource: str, *, partial: bool = False) -> Binding:
-    """A shader storage block whose content is replaced."""
-    return Binding(resource, Usage.STORAGE_WRITE, load=partial)
-
-
-def update_buffer(resource: str) -> Binding:
-    """A shader storage block both read and written, or used with atomics."""
-    return Binding(resource, Usage.STORAGE_UPDATE)
-
-
-def uniform_block(resource: str) -> Binding:
-    """A buffer read as a uniform block."""
-    return Binding(resource, Usage.UNIFORM)
-
-
-# ---------------------------------------------------------------- attachments
-
-
-@dataclass(frozen=True, slots=True)
-class Attachment:
-    """A colour or depth target of a draw: started from ``clear``, kept (``load``), or wholly overwritten (neither)."""
-
-    resource: str
-    clear: Color4 | None = None
-    load: bool = False
-    mip: int | None = None
-    layer: int | None = None
-    read_only: bool = False
-
-
-def color(
-    resource: str,
-    *,
-    clear: Color4 | None = None,
-    load: bool = False,
-    mip: int | None = None,
-    layer: int | None = None,
-) -> Attachment:
-    """A colour attachment. Without ``clear`` and ``load`` the draw must cover every texel."""
-    return Attachment(resource, clear, load, mip, layer)
-
-
-def depth(
-    resource: str,
-    *,
-    clear: float | None = None,
-    load: bool = False,
-    read_only: bool = False,
-    layer: int | None = None,
-) -> Attachment:
-    """A depth attachment. ``clear`` is a distance in 0 (near) .. 1 (far), mirrored under reversed depth."""
-    value = None if clear is None else (clear, 0.0, 0.0, 0.0)
-    return Attachment(resource, value, load or read_only, None, layer, read_only)
-
-
-# ---------------------------------------------------------------- the builder
 
 
 @dataclass
@@ -280,17 +171,17 @@ class Builder:
         state = state or State()
         if isinstance(work, Fullscreen) and not any(stage == "vertex" for stage, _ in program.stages):
             program = replace(program, stages=(*program.stages, ("vertex", _joined(SHADERS, "fullscreen.vert"))))
-        accesses = [_attach(a, Usage.COLOR) for a in color]
+        accesses = [attachment_access(a, Usage.COLOR) for a in color]
         clears = {a.resource: a.clear for a in color if a.clear is not None}
         if depth is not None:
             writes = not depth.read_only
-            accesses.append(_attach(depth, Usage.DEPTH if writes else Usage.DEPTH_READ))
+            accesses.append(attachment_access(depth, Usage.DEPTH if writes else Usage.DEPTH_READ))
             if not writes:
                 state = replace(state, depth_write=False)
             if depth.clear is not None:
                 far = depth.clear[0]
                 clears[depth.resource] = (1.0 - far if self.frame.depth == "reversed" else far, 0.0, 0.0, 0.0)
-        accesses += _bound(bind)
+        accesses += bound_accesses(bind)
         if isinstance(work, DrawIndirect):
             accesses.append(Access(work.buffer, Usage.INDIRECT))
         self._add(SubPass(
@@ -309,7 +200,7 @@ class Builder:
     ) -> None:
         """A dispatch of ``groups`` work groups, or of as many as a buffer says."""
         work = groups if isinstance(groups, DispatchIndirect) else Dispatch(*groups)
-        accesses = _bound(bind)
+        accesses = bound_accesses(bind)
         if isinstance(work, DispatchIndirect):
             accesses.append(Access(work.buffer, Usage.INDIRECT))
         self._add(SubPass(
@@ -383,14 +274,3 @@ def _stage(file: str) -> str:
     if suffix not in _SUFFIX:
         raise ValueError(f"{file}: a shader file ends in one of {', '.join(_SUFFIX)}")
     return _SUFFIX[suffix]
-
-
-def _attach(attachment: Attachment, usage: Usage) -> Access:
-    return Access(attachment.resource, usage, load=attachment.load, mip=attachment.mip, layer=attachment.layer)
-
-
-def _bound(bind: Mapping[str, Binding] | None) -> list[Access]:
-    return [
-        Access(b.resource, b.usage, name, b.load, b.mip, b.layer, b.aspect, b.filter, b.wrap)
-        for name, b in (bind or {}).items()
-    ]

@@ -40,7 +40,6 @@ class Port:
 class Node(ABC, Generic[ParamsT]):
     """Base class of every node: ``class Blur(Node[BlurParams])`` in ``nodes/blur/__init__.py``, found by its folder.
 
-    ``exact`` nodes are tested for equality with a closed form; others name the file of their independent reference.
     ``open_ports`` nodes take any port name, for users' own shaders. ``needs_scene`` nodes draw geometry or read lights.
     """
 
@@ -51,7 +50,6 @@ class Node(ABC, Generic[ParamsT]):
     params_type: ClassVar[type[Params]] = Params  # set from the type argument
     open_ports: ClassVar[bool] = False
     needs_scene: ClassVar[bool] = False
-    exact: ClassVar[bool] = False
 
     def __init__(self, params: ParamsT) -> None:
         self.params = params

@@ -11,7 +11,8 @@ from pydantic import Field
 from rendergraph.document.formats import FORMATS
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.document.suggest import did_you_mean
-from rendergraph.node.builder import Attachment, Binding, Builder, read_buffer, sample, update_buffer
+from rendergraph.node.bindings import Attachment, Binding, read_buffer, sample, update_buffer
+from rendergraph.node.builder import Builder
 from rendergraph.node.params import Params, knob
 from rendergraph.plan.graph import ADDITIVE, PREMULTIPLIED, Blend, BufferDesc, TextureDesc
 

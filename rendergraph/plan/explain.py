@@ -13,7 +13,7 @@ from rendergraph.plan.plan import Plan
 
 #: (kind, reason) to sentences; the first whose evidence is all there is used.
 SENTENCES: Final[Mapping[tuple[str, str], tuple[str, ...]]] = {
-    ("expand", "node_expanded"): ("{subject} is a {node} and became {steps}",),
+    ("expand", "node_expanded"): ("{subject}, of node {node}, became {steps}",),
     ("expand", "output_undeclared"): (
         "{subject} is not declared: it is a frame-sized texture of format {format}, by {from}",
     ),
@@ -81,7 +81,7 @@ def explain_decision(decision: Decision) -> str:
 def explain_code(code: str) -> str:
     """What a diagnostic's code means, in a few lines. Raises ``RenderGraphError`` (RG227) for an unknown one."""
     if code not in MESSAGES:
-        raise RenderGraphError([diagnose("RG227", name=code, hint=did_you_mean(code, MESSAGES))], exit_code=2)
+        raise RenderGraphError([diagnose("RG227", name=code)], exit_code=2)
     message = MESSAGES[code]
     lines = [f"{code} ({message.severity}): {_template(message.text)}", f"help: {_template(message.help)}"]
     return "\n".join([*lines, "", message.explain] if message.explain else lines)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rendergraph.scene.interior import interior_camera
 from rendergraph.scene.scene import F64, Camera, Scene
 
 #: Where a framing camera looks from: a little to the right of and above the front.
@@ -84,9 +85,13 @@ def orbit(camera: Camera, turns: float) -> Camera:
 
 
 def frame_scene(scene: Scene, fov: float = math.radians(60.0)) -> Camera:
-    """A camera outside the scene's bounding sphere from which the whole sphere is visible in a frame no narrower than
-    it is tall. ``fov`` is vertical, radians. The near plane is a thousandth of the distance; there is no far plane.
+    """A camera in a corner of the room that encloses the scene's middle, looking across; for any other scene, outside
+    the bounding sphere, from where the whole sphere is visible in a frame no narrower than it is tall, the near plane
+    at a thousandth of the distance. ``fov`` is vertical, radians. There is no far plane.
     """
+    inside = interior_camera(scene, fov)
+    if inside is not None:
+        return inside
     low, high = scene.bounds()
     centre = (low + high) / 2
     radius = float(np.linalg.norm((high - low) / 2)) or 1.0

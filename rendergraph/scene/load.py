@@ -135,7 +135,10 @@ def _target(scene: Scene, model: CameraModel, base: Camera) -> tuple[float, floa
 
 
 def _apply_lights(scene: Scene, model: LightsModel, frame_seed: int, position: Position | None) -> list[Diagnostic]:
-    """Replace the scene's lights by the model's, joined with its own where ``from_scene``."""
+    """Replace the scene's lights by the model's, joined with its own where ``from_scene``.
+
+    A scene left without any light gets a default sun and sky; one with a sun alone a default sky.
+    """
     if not model.from_scene:
         scene.lights, scene.sun, scene.ambient = [], None, None
     if model.sun is not None:
@@ -154,6 +157,9 @@ def _apply_lights(scene: Scene, model: LightsModel, frame_seed: int, position: P
             scene.lights.append(Light(light.position, color, light.radius, (x, y, z), inner, outer))
         else:
             scene.lights.append(Light(light.position, color, light.radius))
+    if scene.sun is not None and scene.ambient is None:
+        scene.ambient = _DEFAULT_AMBIENT
+        return [diagnose("RG657", position, scene=scene.name)]
     asked = model.model_fields_set - {"from_scene"}
     if asked or scene.lights or scene.sun is not None or scene.ambient is not None:
         return []

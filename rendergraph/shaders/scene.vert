@@ -30,6 +30,13 @@ in vec4 in_color;
 
 invariant gl_Position;
 
+#if !DEPTH_ONLY
+vec3 unit_or_zero(vec3 v) {
+    float largest = max(max(abs(v.x), abs(v.y)), abs(v.z)); // first, so that no square over- or underflows
+    return largest > 0.0 ? normalize(v / largest) : vec3(0.0);
+}
+#endif
+
 void main() {
     uint index = uint(gl_BaseInstanceARB);
     precise vec4 world = instances[index].world * vec4(in_position, 1.0);
@@ -47,13 +54,13 @@ void main() {
     vertex.material = instances[index].material;
 #endif
 #if !DEPTH_ONLY
-    vertex.position = world.xyz;
-    vertex.normal = vec3(
+    // Unit length at the vertices, so that scaled instances interpolate like unscaled ones.
+    vertex.normal = unit_or_zero(vec3(
         dot(instances[index].normal_0.xyz, in_normal),
         dot(instances[index].normal_1.xyz, in_normal),
         dot(instances[index].normal_2.xyz, in_normal)
-    );
-    vertex.tangent.xyz = mat3(instances[index].world) * in_tangent.xyz;
+    ));
+    vertex.tangent.xyz = unit_or_zero(mat3(instances[index].world) * in_tangent.xyz);
     // A mirroring transform turns the cross product of normal and tangent round.
     bool mirrored = (instances[index].flags & MIRRORED) != 0u;
     vertex.tangent.w = mirrored ? -in_tangent.w : in_tangent.w;

@@ -44,7 +44,6 @@ bool is_cut_out(float alpha) {
 
 #if !DEPTH_ONLY
 struct Surface {
-    vec3 position;    // world [m]
     vec3 normal;      // world, unit, on the viewer's side of double-sided geometry
     vec3 base_color;  // linear
     float alpha;
@@ -66,12 +65,13 @@ vec3 shading_normal(vec3 texel) {
 #if NORMAL_MAP
     bool mapped = materials[vertex.material].textures[SLOT_NORMAL].array != NO_TEXTURE;
     if (mapped && dot(vertex.tangent.xyz, vertex.tangent.xyz) > 1e-20) {
-        // The frame of MikkTSpace: interpolated, not orthogonalised; the bitangent from the unnormalised pair's signs.
-        vec3 tangent = normalize(vertex.tangent.xyz);
-        vec3 bitangent = cross(normal, tangent) * (vertex.tangent.w < 0.0 ? -1.0 : 1.0);
+        // MikkTSpace's own frame, which normal maps are baked for: unit at the vertices, then interpolated and neither
+        // normalised nor orthogonalised; only the result is normalised.
+        vec3 tangent = vertex.tangent.xyz;
+        vec3 bitangent = cross(vertex.normal, tangent) * (vertex.tangent.w < 0.0 ? -1.0 : 1.0);
         float strength = materials[vertex.material].factors.z;
         vec3 n = (texel * 2.0 - 1.0) * vec3(strength, strength, 1.0);
-        normal = safe_normalize(tangent * n.x + bitangent * n.y + normal * n.z, normal);
+        normal = safe_normalize(tangent * n.x + bitangent * n.y + vertex.normal * n.z, normal);
     }
 #endif
     // Front faces are set per draw with mirrored transforms in mind, so gl_FrontFacing needs no correction.
@@ -101,7 +101,6 @@ Surface fetch_surface() {
     vec4 base_color = material_base_color(texels[SLOT_BASE_COLOR]);
     vec4 factors = materials[vertex.material].factors;
     Surface s;
-    s.position = vertex.position;
     s.normal = shading_normal(texels[SLOT_NORMAL].xyz);
     s.base_color = base_color.rgb;
     s.alpha = base_color.a;

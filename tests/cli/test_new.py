@@ -30,6 +30,24 @@ def test_a_new_graph_of_any_name_is_valid(rg: Rg, tmp_path: Path, name: str) -> 
     assert (outcome.code, outcome.err) == (0, "")
 
 
+@pytest.mark.parametrize("arguments", [["graph", "x/y.yaml"], ["node", "y", "--folder", "x"]])
+def test_no_folder_is_made_on_the_way(
+    rg: Rg, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    outcome = rg("new", *arguments)
+    assert outcome.code == 2
+    assert "RG574" in outcome.err
+    assert not any(tmp_path.iterdir())
+    (tmp_path / "x").mkdir()
+    assert rg("new", *arguments).code == 0
+
+
+def test_a_name_too_long_for_the_file_system_is_refused(rg: Rg, tmp_path: Path) -> None:
+    outcome = rg("new", "graph", str(tmp_path / ("n" * 300)))
+    assert (outcome.code, "RG560" in outcome.err) == (2, True)
+
+
 @pytest.fixture
 def installed(rg: Rg, tmp_path: Path) -> dict[str, str]:
     """The environment of a process that sees a new node's package as if it were installed."""

@@ -28,8 +28,15 @@ def test_a_sound_machine(device: Device) -> None:
     assert all(check.ok for check in checks.values()), checks
     index = device.info.index
     assert device.info.renderer in checks[f"device {index}"].detail
+    assert ("software" in checks[f"device {index}"].detail) == device.info.is_software
     assert {f"device {index} limits", f"device {index} clock", f"device {index} extensions", "python"} <= checks.keys()
     device.check()
+
+
+def test_every_package_has_a_version(device: Device) -> None:
+    details = [check.detail for check in diagnose_environment() if check.name.startswith("package ")]
+    assert len(details) == len(doctor.PACKAGES)
+    assert all(any(letter.isdigit() for letter in detail) for detail in details), details
 
 
 def test_no_egl(tmp_path) -> None:

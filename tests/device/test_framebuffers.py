@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rendergraph.device import enums as e
-from rendergraph.device.buffers import create_buffer, destroy_buffer, read_buffer
+from rendergraph.device.buffers import create_buffer, read_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.framebuffers import (
     blit,
@@ -144,7 +144,7 @@ def test_without_attachments_shaders_still_run(device: Device, compile_text, dra
     device.gl.glMemoryBarrier(e.ALL_BARRIER_BITS)
     assert int.from_bytes(read_buffer(device, counter), "little") == 16 * 8
     destroy_framebuffer(device, framebuffer)
-    destroy_buffer(device, counter)
+    device.delete_object("glDeleteBuffers", counter.glo)
 
 
 def test_blit_scales_converts_and_resolves(device: Device, make) -> None:

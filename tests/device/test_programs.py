@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rendergraph.device import enums as e
-from rendergraph.device.buffers import create_buffer, destroy_buffer, read_buffer
+from rendergraph.device.buffers import create_buffer, read_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.includes import FileTable
 from rendergraph.device.programs import compile_program
@@ -95,7 +95,7 @@ void main() { stripes[gl_GlobalInvocationID.x] = seeds[gl_GlobalInvocationID.x] 
     device.gl.glMemoryBarrier(e.ALL_BARRIER_BITS)
     assert np.frombuffer(read_buffer(device, zebra), np.uint32).tolist() == [0, 2, 4, 6]
     for buffer in (apple, zebra):
-        destroy_buffer(device, buffer)
+        device.delete_object("glDeleteBuffers", buffer.glo)
 
 
 UNIFORMS = """
@@ -125,7 +125,7 @@ def test_uniforms_of_every_type_arrive(device: Device, compile_text) -> None:
     device.gl.glMemoryBarrier(e.ALL_BARRIER_BITS)
     got = np.frombuffer(read_buffer(device, result), np.float32).tolist()
     assert got == [2, -3, 4, 1, 5, -6, 7, 8, 9, 13]
-    destroy_buffer(device, result)
+    device.delete_object("glDeleteBuffers", result.glo)
 
 
 @pytest.mark.parametrize(

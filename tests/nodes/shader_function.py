@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rendergraph.device import enums
-from rendergraph.device.buffers import create_buffer, destroy_buffer, read_buffer
+from rendergraph.device.buffers import create_buffer, read_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.programs import compile_program
 from rendergraph.plan.graph import Program
@@ -81,6 +81,6 @@ def run_shader_function(
     device.gl.glMemoryBarrier(BUFFER_UPDATE_BARRIER_BIT)
     result = np.frombuffer(read_buffer(device, output), dtype=np.float32).reshape(len(rows), results)
     for buffer in data.values():
-        destroy_buffer(device, buffer)
+        device.delete_object("glDeleteBuffers", buffer.glo)
     device.check()
     return result

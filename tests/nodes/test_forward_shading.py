@@ -17,7 +17,7 @@ from rendergraph.nodes.forward_shading import reference
 from rendergraph.plan.expand import expand
 from rendergraph.run.render import RenderOptions, render_document
 from rendergraph.scene.features import SceneFeatures
-from rendergraph.scene.scene import Alpha, Ambient, Material, Scene, Sun
+from rendergraph.scene.scene import Alpha, Ambient, Camera, Material, Scene, Sun
 
 FORWARD = """\
 rendergraph: 1
@@ -59,15 +59,77 @@ def test_forward_is_deferred(device: Device, tmp_path: Path) -> None:
 
 @pytest.mark.gpu
 def test_shipped_graphs_agree_within_two_steps_of_255(device: Device) -> None:
-    """The whole pipeline on the atrium, before antialiasing: opaque, masked, blended, shadowed."""
+    """The whole pipeline on the atrium at its own size, before antialiasing: opaque, masked, blended, shadowed."""
     images = {}
     for name in ("deferred_shading", "forward_shading"):
         document = load_document(name, ["scene.detail=0.2"])
-        options = RenderOptions(size=(256, 144), samples=1, captures=("display",))
+        options = RenderOptions(samples=0, captures=("display",))
         images[name] = render_document(document, options).captures["display"].astype(int)
     difference = np.abs(images["deferred_shading"] - images["forward_shading"])
     assert difference.max() <= 2
+    assert images["deferred_shading"].shape[:2] == (720, 1280)
     assert images["deferred_shading"].std() > 20  # a picture, not a blank
+
+
+SHADOWS = """\
+passes:
+  shadows:
+    node: shadow_map
+    write: {map: shadow, cascades: cascades}
+    set: {cascades: 1, slope_bias: 0, normal_bias: 0}
+"""
+SHADOW_TARGETS = "  shadow: {format: d32f, fixed: [64, 64]}\n  cascades: {bytes: 320}\n"
+
+
+@pytest.mark.gpu
+def test_shadows_see_the_positions_of_deferred_lighting(device: Device, tmp_path: Path) -> None:
+    """Without any bias a surface shadows itself by the last bits of its position, which far from the origin are a
+    quarter of a millimetre: even those patterns are alike."""
+    far = (3000.0, 0.0, -2000.0)
+    quads = [replace(quad, corner=np.add(quad.corner, far)) for quad in CORNER]
+    scene = quad_scene(quads, MATERIALS, sun=Sun((0.3, -1, -0.5), (2.0, 1.9, 1.7)))
+    camera = replace(
+        CAMERA, position=tuple(np.add(CAMERA.position, far)), target=tuple(np.add(CAMERA.target, far))
+    )
+    images = []
+    for text in (forward(), GRAPH):
+        text = text.replace("passes:\n", SHADOW_TARGETS + SHADOWS)
+        shadowed = "shadow_map: shadow, cascades: cascades}\n    write: {color"
+        for unshadowed, begin in (
+            ("emissive: emissive}\n    write: {color", "emissive: emissive, "),
+            ("node: forward_shading\n    write: {color", "node: forward_shading\n    read: {"),
+        ):
+            text = text.replace(unshadowed, begin + shadowed)
+        images.append(render_scene(device, tmp_path, text, scene, camera).images["hdr"])
+    lit = render_scene(device, tmp_path, forward(), scene, camera).images["hdr"]
+    assert (np.abs(images[0] - lit).max(axis=-1) > 1e-3).mean() > 0.1  # self-shadowed in many places
+    assert np.abs(images[0] - images[1]).max() / lit.max() < 1e-4
+
+
+@pytest.mark.gpu
+@pytest.mark.parametrize("prepass", ["off", "full"])
+def test_at_equal_depth_the_last_draw_wins(device: Device, tmp_path: Path, prepass: str) -> None:
+    """Two squares at one place: with and without a prepass, drawn or stored, the second is seen."""
+    square = [Quad((-1, -1, 0), (2, 0, 0), (0, 2, 0), material=k) for k in (0, 1)]
+    colours = ((0.9, 0.1, 0.1), (0.1, 0.1, 0.9))
+    scene = quad_scene(square, [Material(base_color=(*c, 1.0), unlit=True) for c in colours])
+    facing = Camera((0, 0, 1), (0, 0, 0), fov=np.pi / 2)
+    drawn = render_scene(device, tmp_path, forward("opaque", prepass), scene, facing).images["hdr"]
+    stored = render_scene(
+        device, tmp_path, GRAPH.replace("    node: gbuffer\n", f"    node: gbuffer\n    set: {{prepass: {prepass}}}\n"),
+        scene, facing,
+    ).images["base_color"]  # fmt: skip
+    for image in (drawn, stored):
+        assert image[32, 48, :3] == pytest.approx(colours[1], abs=1e-6)
+
+
+@pytest.mark.gpu
+def test_a_scene_without_light_is_drawn_dark(device: Device, tmp_path: Path) -> None:
+    """What lighting alone needs, the target's size among it, is compiled away."""
+    dark = corner(lights=[], sun=None, ambient=None)
+    image = render_scene(device, tmp_path, forward(), dark, CAMERA).images["hdr"]
+    emissive = image[..., :3].max(axis=-1) > 0
+    assert 0 < emissive.mean() < 0.2  # the emissive quad alone
 
 
 @pytest.mark.gpu

@@ -283,6 +283,32 @@ def test_normal_map_strength_and_missing_tangents(device: Device, tmp_path: Path
     assert images["normal"][CENTRE][:3] == pytest.approx((0, 0, 1), abs=1e-5)
 
 
+def test_the_normal_maps_frame_is_that_of_mikktspace(device: Device, tmp_path: Path) -> None:
+    """Unit normals and tangents at the vertices, interpolated and not normalised; whatever the instance's scale."""
+    texel = np.array([230, 90, 205])
+    lean = Image(np.full((4, 4, 4), (*texel, 255), dtype=np.uint8), srgb=False)
+    left, right = np.array([-0.9, 0.0, 0.436]), np.array([0.6, 0.0, 0.8])
+    normals = np.array([left, right, right, left]) / np.linalg.norm([left, right, right, left], axis=1, keepdims=True)
+    tangents = np.cross([0.0, 1.0, 0.0], normals)
+    share = (CENTRE[1] + 0.5) / 64.0
+    n, t = ((1.0 - share) * v[0] + share * v[1] for v in (normals, tangents))
+    x, y, z = texel / 255 * 2 - 1
+    expected = x * t + y * np.cross(n, t) + z * n
+    expected /= np.linalg.norm(expected)
+    unit_n, unit_t = n / np.linalg.norm(n), t / np.linalg.norm(t)
+    normalised = x * unit_t + y * np.cross(unit_n, unit_t) + z * unit_n
+    normalised /= np.linalg.norm(normalised)
+    for scale in (1.0, 1e-3, 1e3):
+        world = np.diag([scale, scale, scale, 1.0])
+        small = Quad(*(np.array(v) / scale for v in (SQUARE.corner, SQUARE.u, SQUARE.v)), world=world)
+        scene = quad_scene([small], [Material(normal_texture=TextureUse(0))], images=[lean])
+        scene.normals[:] = normals
+        scene.tangents[:, :3] = tangents
+        images = render_scene(device, tmp_path, SURFACES.replace("PREPASS", "off"), scene, FACING).images
+        assert images["normal"][CENTRE][:3] == pytest.approx(expected, abs=1e-4)
+        assert images["normal"][CENTRE][:3] != pytest.approx(normalised, abs=1e-2)
+
+
 def test_non_uniform_scale_tilts_normals_the_right_way(device: Device, tmp_path: Path) -> None:
     slope = Quad((-1, -1, 0), (2, 0, 0), (0, 2, -2))
     images = fill(

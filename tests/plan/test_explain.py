@@ -57,6 +57,13 @@ def test_a_sentence_is_chosen_by_the_evidence_there_is() -> None:
     assert alone != named
 
 
+@pytest.mark.parametrize("node", ["exposure", "fxaa", "tonemap"])
+def test_no_sentence_needs_an_article(node: str) -> None:
+    text = explain_decision(Decision("expand", "node_expanded", "p", {"node": node, "steps": ["p.draw"]}))
+    assert node in text
+    assert not {"a", "an"} & set(text.split())
+
+
 def test_an_unknown_reason_is_shown_as_it_is() -> None:
     sentence = explain_decision(Decision("cull", "moon_phase", "a", {"phase": "new"}))
     assert all(word in sentence for word in ("a", "moon_phase", "phase", "new"))
@@ -74,6 +81,7 @@ def test_unknown_code() -> None:
         explain_code("RG999")
     assert [d.code for d in caught.value.diagnostics] == ["RG227"]
     assert caught.value.exit_code == 2
+    assert "mean" not in caught.value.diagnostics[0].help, "an unrelated code is no help"
 
 
 def test_subjects() -> None:

@@ -13,7 +13,8 @@ from rendergraph.document import node_checks
 from rendergraph.document.load import Document, load_document
 from rendergraph.document.messages import RenderGraphError
 from rendergraph.node import discovery
-from rendergraph.node.builder import Builder, color, sample, store_image
+from rendergraph.node.bindings import color, sample, store_image
+from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.discovery import find_node
 from rendergraph.node.params import GraphFile, Params, knob

@@ -16,7 +16,7 @@ def tiny(tmp_path: Path) -> TinyGltf:
 
 @pytest.fixture(scope="session")
 def assets() -> Path:
-    """The folder of real scenes: ``RG_ASSETS``, or ``../shared/assets`` beside the checkout; skips without it."""
+    """The folder of real scenes: ``RG_ASSETS``, or an asset folder beside the checkout; skips without it."""
     default = Path(__file__).resolve().parents[3] / "shared" / "assets"
     folder = Path(os.environ.get("RG_ASSETS", default))
     if not folder.is_dir():

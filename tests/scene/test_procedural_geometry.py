@@ -10,10 +10,11 @@ import pytest
 
 from rendergraph.scene.procedural.arcade import arch_ring, column, rib, spandrels, vault
 from rendergraph.scene.procedural.block import block
-from rendergraph.scene.procedural.furnishings import drape, fountain, pot, tie_band
+from rendergraph.scene.procedural.furnishings import drape, fountain, lantern_frame, lantern_glass, pot, tie_band
 from rendergraph.scene.procedural.geometry import Geometry, merge
 from rendergraph.scene.procedural.mesh_builder import placement
 from rendergraph.scene.procedural.shapes import bar, disc, lathe, sheet, sphere
+from rendergraph.scene.rays import Triangles, cast
 
 SOLIDS = {
     "box": (block((1.0, 2.0, 3.0)), 6.0),
@@ -53,6 +54,63 @@ def test_lathed_furniture_is_closed(solid: object, detail: float) -> None:
 
 #: The fountain's stem stands in the basin without a foot of its own.
 _rings_left_open = {"pot": 0, "fountain": 1}
+
+
+CLOSED = {
+    "tie band": tie_band,
+    "lantern": lambda d: lantern_frame(1.2, d),
+    "lantern glass": lantern_glass,
+}
+
+
+@pytest.mark.parametrize("detail", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("name", CLOSED)
+def test_bronze_and_glass_are_closed(name: str, detail: float) -> None:
+    geometry = CLOSED[name](detail)
+    assert geometry.signed_volume() > 0.0
+    assert _open_edges(geometry) == 0
+
+
+COLUMNS = {"fluted": (3.0, 0.24, True), "plain": (2.3, 0.17, False)}
+
+
+@pytest.mark.parametrize("detail", [0.0, 0.3, 1.0])
+@pytest.mark.parametrize("name", COLUMNS)
+def test_no_ray_gets_into_a_column(name: str, detail: float) -> None:
+    """Its parts end inside one another: rays from all around that meet it meet a front first. A gap shows a back."""
+    height, radius, fluted = COLUMNS[name]
+    solid = column(height, radius, detail, fluted=fluted)
+    assert _backs_seen(solid, height, radius) == 0
+
+
+def test_a_ray_gets_into_a_column_without_its_first_ring() -> None:
+    """The twin: the quads that join the column's first two mouldings are taken away."""
+    solid = column(3.0, 0.24, 1.0, fluted=True)
+    corners = solid.positions[solid.indices.reshape(-1, 3)]
+    flat = (np.ptp(corners[:, :, 1], axis=1) < 1e-9) & (np.abs(corners[:, 0, 1] - 0.25) < 1e-9)
+    assert flat.sum() > 20
+    holed = replace(solid, indices=solid.indices.reshape(-1, 3)[~flat].ravel())
+    assert _backs_seen(holed, 3.0, 0.24) > 0
+
+
+def _backs_seen(solid: Geometry, height: float, radius: float) -> int:
+    """How many rays towards all parts of a column's mouldings, from above, below and level, meet a back first."""
+    triangles = Triangles(np.stack([solid.positions[solid.indices[k::3]] for k in range(3)]),
+                          np.zeros(solid.triangles, dtype=bool))  # fmt: skip
+    ends = [0.14, 0.25, 0.31, 0.37, 0.40, height - 0.54, height - 0.52, height - 0.49, height - 0.14]
+    reach = np.linspace(0.8, 1.5, 57) * radius
+    targets = np.array([(0.0, y, z) for y in ends for z in reach])
+    seen = 0
+    for x, y in ((2.0, 3.9), (2.0, -1.0), (2.0, height / 2), (0.4, 1.2), (0.4, height - 1.2)):
+        origin = np.array([x, y, 0.13])
+        along = targets - origin
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        # On a silhouette rounding decides between a front and a back: a gap is seen by two rays side by side.
+        pair = [cast(triangles, origin + (0.0, 3e-4 * k, 3e-4 * k), along) for k in (0, 1)]
+        backs = [np.isfinite(hits.distance) & ~hits.faced for hits in pair]
+        assert np.isfinite(pair[0].distance).sum() > 50
+        seen += int((backs[0] & backs[1]).sum())
+    return seen
 
 
 PARTS = {

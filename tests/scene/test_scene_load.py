@@ -216,6 +216,23 @@ def test_a_scene_without_any_light_gets_a_sun_and_a_note() -> None:
     assert loaded.scene.ambient is not None
 
 
+def test_a_sun_alone_gets_a_default_sky_and_a_note() -> None:
+    sun = {"direction": [0, -1, 0], "illuminance": 3}
+    loaded = load("cornell", lights={"from_scene": False, "sun": sun})
+    assert [note.code for note in loaded.notes] == ["RG657"]
+    assert loaded.scene.ambient is not None
+    assert min(loaded.scene.ambient.sky + loaded.scene.ambient.ground) > 0
+    assert loaded.scene.sun is not None
+    assert max(loaded.scene.sun.irradiance) == pytest.approx(3)
+    black = {"sky": [0, 0, 0], "ground": [0, 0, 0]}
+    dark = load("cornell", lights={"from_scene": False, "sun": sun, "ambient": black})
+    assert dark.notes == ()
+    assert not dark.scene.features().ambient
+    kept = load("cornell", lights={"sun": sun})  # the scene brings its own
+    assert kept.notes == ()
+    assert kept.scene.ambient == load("cornell").scene.ambient
+
+
 def test_lights_that_are_asked_to_be_dark_stay_dark() -> None:
     loaded = load("cornell", lights={"from_scene": False, "points": {"count": 0}})
     assert loaded.notes == ()

@@ -30,18 +30,35 @@ def column(height: float, radius: float, detail: float, *, fluted: bool) -> Geom
         _hollow(r * 1.26, r * 1.16, 0.25, 0.31, detail),
         _bulge(r * 1.18, r * 1.12, 0.31, 0.37, 0.03, detail),
         [(r * 1.06, 0.37), (r * 1.06, 0.40)],
+        [(r * 0.9, 0.40)],  # inside the shaft
     ]
     neck, bell_top, abacus = top - 0.52, top - 0.14, 0.14
+    collar = [
+        [(r * 0.8, neck - 0.02)],  # inside the shaft
+        _bulge(r * 0.86, r * 0.86, neck - 0.02, neck + 0.03, 0.025, detail),
+        [(r * 0.8, neck + 0.03)],  # inside the bell
+    ]
     around = even_segments(detail, 6, 36)
     solid = [
         block((wide, 0.14, wide), (0.0, 0.07, 0.0), 0.012 if detail > 0.15 else 0.0),
-        lathe(base, around),
+        lathe(_joined(base), around),
         _shaft(r, 0.40, neck, detail, fluted),
-        lathe([_bulge(r * 0.86, r * 0.86, neck - 0.02, neck + 0.03, 0.025, detail)], around),
+        lathe(_joined(collar), around),
         _capital(r * 0.84, neck + 0.02, bell_top, detail),
         block((wide, abacus, wide), (0.0, top - abacus / 2.0, 0.0), 0.02 if detail > 0.15 else 0.0),
     ]
     return merge(solid)
+
+
+def _joined(runs: list[list[tuple[float, float]]]) -> list[list[tuple[float, float]]]:
+    """The runs of two points or more, with a straight run wherever one ends elsewhere than the next starts."""
+    joined = []
+    for k, run in enumerate(runs):
+        if k > 0 and runs[k - 1][-1] != run[0]:
+            joined.append([runs[k - 1][-1], run[0]])
+        if len(run) > 1:
+            joined.append(run)
+    return joined
 
 
 def _bulge(low: float, high: float, y0: float, y1: float, out: float, detail: float) -> list[tuple[float, float]]:
@@ -88,8 +105,10 @@ def _capital(radius: float, y0: float, y1: float, detail: float) -> Geometry:
     t = np.linspace(0.0, 1.0, rows + 1)
     bell = radius * (1.0 + 0.62 * t**2.2)
     profile = np.stack([bell, y0 + (y1 - y0) * t], axis=1)
+    # The bell is wider than the bevelled underside of the abacus: a flat rim closes the gap.
+    runs = [profile, np.array([[bell[-1], y1], [bell[-1] * 0.7, y1]])]
     if around < 32:
-        return lathe([profile], around)
+        return lathe(runs, around)
 
     def leaves(angle: F64, y: F64) -> F64:
         t = (y - y0) / (y1 - y0)
@@ -97,7 +116,7 @@ def _capital(radius: float, y0: float, y1: float, detail: float) -> Geometry:
         upper = np.abs(np.sin(4.0 * angle)) ** 0.8 * _curl(t, 0.35, 0.93)
         return 1.0 + 0.27 * lower + 0.30 * upper
 
-    return lathe([profile], around, leaves)
+    return lathe(runs, around, leaves)
 
 
 def _curl(t: F64, start: float, end: float) -> F64:

@@ -46,7 +46,7 @@ def tie_band(detail: float) -> Geometry:
     """The bronze clasp around a gathered curtain, about the origin."""
     t = np.linspace(0.0, 2.0 * np.pi, 2 * segments(detail, 2, 5) + 1)
     profile = np.stack([0.165 - 0.012 * np.cos(t), -0.03 * np.sin(t)], axis=1)
-    return lathe([profile[::-1]], even_segments(detail, 4, 24))
+    return lathe([profile], even_segments(detail, 4, 24))
 
 
 def curtain_rail(length: float, detail: float) -> Geometry:

@@ -2,7 +2,8 @@
 
 from rendergraph.document.formats import REAL
 from rendergraph.node import Node, Params, Port, knob
-from rendergraph.node.builder import Builder, color, sample
+from rendergraph.node.bindings import color, sample
+from rendergraph.node.builder import Builder
 
 
 class ${class_name}Params(Params):
@@ -16,7 +17,6 @@ class $class_name(Node[${class_name}Params]):
 
     inputs = {"color": Port("The picture.", formats=tuple(sorted(REAL)))}
     outputs = {"color": Port("The result.", formats=("rgba8", *sorted(REAL - {"rgba8"})), like="color")}
-    exact = True
 
     def build(self, b: Builder) -> None:
         """One full-screen draw."""
