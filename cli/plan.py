@@ -21,7 +21,6 @@ from rendergraph.cli.options import (
     SeedOption,
     SetOption,
     SizeOption,
-    parse_order,
     parse_size,
 )
 
@@ -67,7 +66,7 @@ def plan(
         raise typer.BadParameter("it writes what --check would read: give one of them", param_hint="--lock")
     locked = None if check is None else read_lock(check)
     document = load_document(graph, overrides or ())
-    options = PlanOptions(alias=not no_alias, cull=not no_cull, order=parse_order(order), seed=order_seed)
+    options = PlanOptions(alias=not no_alias, cull=not no_cull, order=order.value, seed=order_seed)
     planned = plan_document(document, options, scene=scene, size=parse_size(size), frames=frames, full=full)
     report(planned.warnings)
     record = resources_record(planned.plan, document.model.title, advice=advise(document, planned.plan, full=full))

@@ -62,6 +62,16 @@ def create_buffer(device: Device, data: int | bytes | bytearray | NDArray[Any], 
     return buffer
 
 
+def upload_buffer(device: Device, buffer: Buffer, data: bytes | bytearray | NDArray[Any], offset: int = 0) -> None:
+    """Overwrite bytes from ``offset`` on; RG525 when they do not fit."""
+    block = _block(data)
+    _check(buffer, offset, len(block))
+    device.debug.subject = buffer.label
+    device.gl.glNamedBufferSubData(buffer.glo, buffer.offset + offset, len(block), _pointer(block))
+    device.counters.bytes_uploaded += len(block)
+    device.debug.subject = ""
+
+
 def read_buffer(device: Device, buffer: Buffer, offset: int = 0, bytes: int | None = None) -> bytes:
     """Bytes from ``offset`` on, to the end unless said; waits for the device."""
     count = buffer.bytes - offset if bytes is None else bytes
