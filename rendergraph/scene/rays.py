@@ -1,4 +1,4 @@
-"""What rays from one point of a scene hit: every triangle against every direction, without an acceleration structure."""
+"""What rays from one point of a scene hit: every triangle against every ray, without an acceleration structure."""
 
 from __future__ import annotations
 

@@ -89,9 +89,7 @@ def test_shadows_see_the_positions_of_deferred_lighting(device: Device, tmp_path
     far = (3000.0, 0.0, -2000.0)
     quads = [replace(quad, corner=np.add(quad.corner, far)) for quad in CORNER]
     scene = quad_scene(quads, MATERIALS, sun=Sun((0.3, -1, -0.5), (2.0, 1.9, 1.7)))
-    camera = replace(
-        CAMERA, position=tuple(np.add(CAMERA.position, far)), target=tuple(np.add(CAMERA.target, far))
-    )
+    camera = replace(CAMERA, position=tuple(np.add(CAMERA.position, far)), target=tuple(np.add(CAMERA.target, far)))
     images = []
     for text in (forward(), GRAPH):
         text = text.replace("passes:\n", SHADOW_TARGETS + SHADOWS)

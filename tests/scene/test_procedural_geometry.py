@@ -106,7 +106,7 @@ def _backs_seen(solid: Geometry, height: float, radius: float) -> int:
         along = targets - origin
         along /= np.linalg.norm(along, axis=1, keepdims=True)
         # On a silhouette rounding decides between a front and a back: a gap is seen by two rays side by side.
-        pair = [cast(triangles, origin + (0.0, 3e-4 * k, 3e-4 * k), along) for k in (0, 1)]
+        pair = [cast(triangles, origin + np.array([0.0, 3e-4 * k, 3e-4 * k]), along) for k in (0, 1)]
         backs = [np.isfinite(hits.distance) & ~hits.faced for hits in pair]
         assert np.isfinite(pair[0].distance).sum() > 50
         seen += int((backs[0] & backs[1]).sum())

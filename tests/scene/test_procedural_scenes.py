@@ -35,7 +35,7 @@ def test_triangles_never_fall_as_detail_rises(name: str) -> None:
 
 def test_low_detail_keeps_the_silhouette() -> None:
     coarse, fine = shipped("atrium", 0.0), shipped("atrium")
-    assert coarse.triangles < 20_000
+    assert coarse.triangles < 22_000
     np.testing.assert_allclose(coarse.bounds(), fine.bounds(), atol=0.02)
     for low, high in zip(coarse.instances, fine.instances, strict=True):
         assert low.name == high.name

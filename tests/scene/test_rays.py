@@ -31,7 +31,7 @@ def test_a_hit_has_its_distance_and_side() -> None:
 
 def test_the_nearest_of_many_wins_in_any_order() -> None:
     for z in ([-2.0, -1.0, -3.0], [-1.0, -3.0, -2.0]):
-        corners = np.concatenate([FLAT + (0.0, 0.0, 2.0 + depth) for depth in z], axis=1)
+        corners = np.concatenate([FLAT + np.array([0.0, 0.0, 2.0 + depth]) for depth in z], axis=1)
         assert cast(sided(corners), ORIGIN, AHEAD).distance.tolist() == [1.0]
 
 

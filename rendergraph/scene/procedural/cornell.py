@@ -22,7 +22,8 @@ _RADIANCE = (17.0, 12.0, 4.0)
 def cornell(detail: float, seed: int) -> Scene:
     """The box: five walls, two boxes, an emissive quad and below it the spot light that stands in for it.
 
-    Nothing in it is random; ``seed`` is accepted and ignored. Faces point into the room.
+    Nothing in it is random; ``seed`` is accepted and ignored. Faces point into the room. Only suns cast shadows, and
+    there is none here: the boxes seem to float.
     """
     builder = SceneBuilder("cornell")
     white = builder.material(Material("white", (0.73, 0.73, 0.73, 1.0), metallic=0.0))
