@@ -21,6 +21,7 @@ from rendergraph.run.frame_constants import STRIDE, pack_frames
 from rendergraph.run.geometry import SceneGeometry
 from rendergraph.run.readback import read_resource
 from rendergraph.run.result import Pixels, StepCounters, StepTimes
+from rendergraph.run.state import restore_defaults
 from rendergraph.scene.scene import Camera, Scene
 
 if TYPE_CHECKING:
@@ -184,8 +185,9 @@ class Runner:
         return tuple(frames), tuple(handed), steps
 
     def release(self) -> None:
-        """Delete every object this runner made."""
+        """Delete every object this runner made, and leave the context's state as it was opened."""
         self._device.finish()
+        restore_defaults(self._device.gl)
         # Samplers are shared by every run through the device's cache.
         mine = [key for key in self._device.owned if key not in self._owned_before and key[0] != "glDeleteSamplers"]
         for delete, name in mine:

@@ -120,3 +120,17 @@ class Recorder:
             self.set(("factors", target), factors, gl.glBlendFuncSeparatei, target, *factors)
             equation = _EQUATIONS[blend.equation]
             self.set(("equation", target), equation, gl.glBlendEquationi, target, equation)
+
+
+def restore_defaults(gl: GL) -> None:
+    """Leave the fixed-function state as the device opened it, for whoever uses the context next."""
+    for capability in (enums.DEPTH_TEST, enums.CULL_FACE, enums.POLYGON_OFFSET_FILL, enums.DEPTH_CLAMP):
+        gl.glDisable(capability)
+    for target in range(_MAX_TARGETS):
+        gl.glDisablei(enums.BLEND, target)
+    gl.glDepthMask(1)
+    gl.glColorMask(1, 1, 1, 1)
+    gl.glFrontFace(enums.CCW)
+    gl.glUseProgram(0)
+    gl.glBindVertexArray(0)
+    gl.glBindFramebuffer(enums.DRAW_FRAMEBUFFER, 0)

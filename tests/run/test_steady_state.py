@@ -139,3 +139,11 @@ def test_frames_are_handed_over_as_they_come_and_not_kept(tmp_path: Path) -> Non
     )
     assert not result.images
     assert list(result.files.values()) == ["now_0000.npy", "now_0001.npy"]
+
+
+def test_a_run_leaves_the_contexts_state_as_it_was_opened() -> None:
+    gl = open_device().gl
+    render_document(load_document("deferred_shading", SMALL), RenderOptions(size=(96, 54), samples=0))
+    assert gl.integer(0x0B72) == 1  # depth write mask
+    assert not any(gl.glIsEnabled(capability) for capability in (0x0B71, 0x0B44, 0x8037, 0x864F, 0x0BE2))
+    assert (gl.integer(0x0B46), gl.integer(0x8B8D), gl.integer(0x8CA6)) == (0x0901, 0, 0)
