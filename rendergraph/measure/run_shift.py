@@ -54,7 +54,7 @@ def shift_of_runs(before: Runs, after: Runs, alpha: float) -> Shift:
     dependence = dependence_of_samples(of_before, of_after)
     a, b = of_before.values, of_after.values
     test = mann_whitney(a, b, dependence.inflation, dependence.freedom)
-    medians = float(np.median(np.concatenate(before.samples))), float(np.median(np.concatenate(after.samples)))
+    medians = float(_median(np.concatenate(before.samples))), float(_median(np.concatenate(after.samples)))
     least = min(len(a), len(b))
     interval = shift_between(a, b, test, alpha)
     return Shift("mann_whitney", samples, medians, test.p_value(), interval, least, least / dependence.inflation)
@@ -66,7 +66,7 @@ def shift_of_blocks(before: Runs, after: Runs, alpha: float) -> Shift:
     Where the differences of one process resemble each other, Student's t widened by their design effect.
     """
     pairs = [
-        (np.median(a), np.median(b), process)
+        (_median(a), _median(b), process)
         for a, b, process in zip(before.samples, after.samples, before.processes, strict=True)
         if len(a) and len(b)
     ]
@@ -75,7 +75,7 @@ def shift_of_blocks(before: Runs, after: Runs, alpha: float) -> Shift:
         return Shift("signed_rank", samples, None, None, Interval(0.0, -inf, inf), 0, 0.0)
     medians = np.array([pair[:2] for pair in pairs], np.float64)
     runs = Runs(tuple((medians[:, 1] - medians[:, 0]).reshape(-1, 1)), tuple(pair[2] for pair in pairs))
-    middle = float(np.median(medians[:, 0])), float(np.median(medians[:, 1]))
+    middle = float(_median(medians[:, 0])), float(_median(medians[:, 1]))
     shortened = _shorten(runs)
     differences, count = shortened.values, len(shortened.values)
     dependence = dependence_of_pairs(shortened)
@@ -113,6 +113,12 @@ def _shorten(runs: Runs) -> Sampled:
 def _medians(values: Floats, length: int) -> Floats:
     """Medians of stretches of ``length`` values; a rest of half that or more counts too, and so does a lone one."""
     whole = len(values) - len(values) % length
-    medians: Floats = np.median(values[:whole].reshape(-1, length), axis=1)
+    medians = _median(values[:whole].reshape(-1, length))
     rest = values[whole:]
-    return np.append(medians, np.median(rest)) if 2 * len(rest) >= length or not whole else medians
+    return np.append(medians, _median(rest)) if 2 * len(rest) >= length or not whole else medians
+
+
+def _median(values: Floats) -> Floats:
+    """Medians along the last axis. ``numpy.median`` would import masked arrays, a tenth of this command's time."""
+    ordered, count = np.sort(values, axis=-1), values.shape[-1]
+    return np.asarray((ordered[..., (count - 1) // 2] + ordered[..., count // 2]) / 2, dtype=np.float64)
