@@ -163,7 +163,7 @@ def _upload_textures(device: Device, placement: TexturePlacement) -> list[Textur
             target=Target.D2_ARRAY,
         )
         texture = create_texture(device, desc, f"u_textures[{index}]")
-        upload_texture(device, texture, array.pixels())
-        device.gl.glGenerateTextureMipmap(texture.glo)
+        for mip, level in enumerate(array.levels()):
+            upload_texture(device, texture, level, mip=mip)
         textures.append(texture)
     return textures

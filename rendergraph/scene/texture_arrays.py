@@ -48,6 +48,17 @@ class TextureArrayLayers:
             list(pool.map(fill, range(len(self.images))))
         return stacked
 
+    def levels(self) -> list[U8]:
+        """The whole mip chain, each level ``uint8[layers, s, s, 4]`` from ``size`` down to one texel.
+
+        Made here and not by the driver: each rounds its own way at every level, and a neutral normal then tilts by
+        another angle on another renderer.
+        """
+        first = self.pixels()
+        with ThreadPoolExecutor() as pool:
+            chains = list(pool.map(lambda layer: halved(layer, self.srgb), first))
+        return [first, *(np.stack(level) for level in zip(*chains, strict=True))]
+
 
 @dataclass(frozen=True, slots=True)
 class TexturePlacement:
@@ -122,6 +133,24 @@ _STEPS = np.arange(65536) / 65535.0
 _ENCODE = np.rint(
     255.0 * np.where(_STEPS <= 0.0031308, _STEPS * 12.92, 1.055 * np.maximum(_STEPS, 1e-9) ** (1 / 2.4) - 0.055)
 ).astype(np.uint8)
+
+
+def halved(pixels: U8, srgb: bool) -> list[U8]:
+    """The levels below ``uint8[s, s, 4]``, ``s`` a power of two: means of 2x2 texels, taken before any rounding.
+
+    Colour is averaged in linear light; alpha and data as stored.
+    """
+    values = pixels.astype(np.float32) / np.float32(255.0)
+    if srgb:
+        values[..., :3] = _DECODE[pixels[..., :3]]
+    levels = []
+    while (half := values.shape[0] // 2) > 0:
+        values = values.reshape(half, 2, half, 2, 4).mean(axis=(1, 3))
+        level = np.rint(values * np.float32(255.0)).astype(np.uint8)
+        if srgb:
+            level[..., :3] = _ENCODE[np.rint(values[..., :3] * np.float32(65535.0)).astype(np.uint16)]
+        levels.append(level)
+    return levels
 
 
 def resample(pixels: U8, size: int, srgb: bool) -> U8:

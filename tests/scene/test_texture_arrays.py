@@ -7,7 +7,7 @@ import pytest
 
 from rendergraph.document.messages import RenderGraphError
 from rendergraph.scene.scene import Image, Instance, Material, Mesh, Scene, TextureUse
-from rendergraph.scene.texture_arrays import MAX_ARRAYS, place_textures, resample, size_class
+from rendergraph.scene.texture_arrays import MAX_ARRAYS, halved, place_textures, resample, size_class
 
 
 def scene_with(*images):
@@ -124,3 +124,24 @@ def test_rows_and_columns_keep_their_places():
     assert large[0, 0].tolist() == [255, 0, 0, 0]
     assert large[0, -1].tolist() == [0, 255, 0, 0]
     assert large[-1, 0].tolist() == [0, 0, 255, 0]
+
+
+def test_neutral_normals_stay_neutral_down_the_chain() -> None:
+    """Drivers that round each level their own way drift; means taken before rounding do not."""
+    flat = np.full((8, 8, 4), (128, 127, 255, 255), dtype=np.uint8)
+    levels = halved(flat, srgb=False)
+    assert [level.shape for level in levels] == [(4, 4, 4), (2, 2, 4), (1, 1, 4)]
+    assert all((level == flat[0, 0]).all() for level in levels)
+
+
+def test_levels_are_means_of_the_first_level() -> None:
+    pixels = np.random.default_rng(5).integers(0, 256, (16, 16, 4), dtype=np.uint8)
+    last = halved(pixels, srgb=False)[-1][0, 0]
+    assert (np.abs(last - pixels.astype(np.float64).mean(axis=(0, 1))) <= 0.5 + 1e-3).all()
+
+
+def test_levels_of_colour_are_averaged_in_linear_light() -> None:
+    checker = np.zeros((2, 2, 4), dtype=np.uint8)
+    checker[0, 0] = checker[1, 1] = 255
+    # half of full linear light encodes to 188 in sRGB; the mean of the codes would be 128, which alpha keeps
+    assert halved(checker, srgb=True)[0][0, 0].tolist() == [188, 188, 188, 128]
