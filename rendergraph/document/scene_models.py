@@ -78,6 +78,11 @@ class PointsModel(Model):
         None, gt=0, description="Reach; none: where the light falls below `cutoff`.", json_schema_extra={"unit": "m"}
     )
     cutoff: float = Field(0.02, gt=0, description="Irradiance below which a light without `radius` ends.")
+    circle: NonNegative = Field(
+        0.0,
+        description="Radius of the level circle that each light runs once over the frames of the run.",
+        json_schema_extra={"unit": "m"},
+    )
 
 
 class PointModel(Model):

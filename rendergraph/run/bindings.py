@@ -65,6 +65,10 @@ class Bindings:
         for name, image in program.images.items():
             self._image(image.unit, self._of(named, name, "image", subpass))
         for name, block in program.storage_blocks.items():
+            if name == "Lights" and self._geometry is not None and self._geometry.lights_move:
+                self._recorder.forget((enums.SHADER_STORAGE_BUFFER, block.binding))
+                self._recorder.call(self._geometry.bind_lights, block.binding)
+                continue
             scene = self._geometry.blocks.get(name) if self._geometry is not None else None
             buffer = scene if scene is not None else self._buffer(self._of(named, name, "storage block", subpass))
             self._range(enums.SHADER_STORAGE_BUFFER, block.binding, buffer)

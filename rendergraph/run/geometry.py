@@ -36,6 +36,8 @@ COMMAND_BYTES = 20
 
 #: Most bytes of draw commands kept for a moving camera; beyond it neighbouring frames share an order.
 COMMAND_BUDGET = 64 * 2**20
+#: Most bytes of lights kept for moving ones; beyond it neighbouring frames share their positions.
+LIGHT_BUDGET = 64 * 2**20
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +71,32 @@ class SceneGeometry:
         self.blocks: dict[str, Buffer] = {
             "Instances": create_buffer(device, pack_instances(scene) or pad.tobytes() * 2, "Instances"),
             "Materials": create_buffer(device, pack_materials(scene, placement) or pad.tobytes() * 4, "Materials"),
-            "Lights": create_buffer(device, pack_lights(scene), "Lights"),
+            "Lights": self._pack_lights(scene, len(cameras)),
         }
         self._vertex_arrays: dict[tuple[tuple[str, int], ...], int] = {}
         self._build_commands(scene, cameras, replays)
         self._frame_offset = 0
+
+    # ---- lights
+
+    def _pack_lights(self, scene: Scene, frames: int) -> Buffer:
+        """The lights of every frame one after another, or once for all where none moves."""
+        self.lights_move = frames > 1 and any(light.circle for light in scene.lights)
+        first = pack_lights(scene)
+        # Storage ranges may start only at multiples of 256 (the GL maximum).
+        self._light_stride = -(-len(first) // 256) * 256
+        kept = min(frames, max(1, LIGHT_BUDGET // self._light_stride)) if self.lights_move else 1
+        self._light_block = [frame * kept // frames for frame in range(frames)] or [0]
+        blocks = [pack_lights(scene, block / kept).ljust(self._light_stride, b"\0") for block in range(kept)]
+        self._light_bytes = len(first)
+        self._light_offset = 0
+        return create_buffer(self._device, b"".join(blocks) if self.lights_move else first, "Lights")
+
+    def bind_lights(self, binding: int) -> None:
+        """Let a storage binding point see this frame's lights."""
+        self._gl.glBindBufferRange(
+            enums.SHADER_STORAGE_BUFFER, binding, self.blocks["Lights"].glo, self._light_offset, self._light_bytes
+        )
 
     # ---- draw commands
 
@@ -112,6 +135,7 @@ class SceneGeometry:
         """Use the commands sorted for this frame's camera."""
         block = self._frame_block[min(index, len(self._frame_block) - 1)] if self._frame_block else 0
         self._frame_offset = block * self._frame_bytes
+        self._light_offset = self._light_block[min(index, len(self._light_block) - 1)] * self._light_stride
 
     def bind_commands(self) -> None:
         """Make the scene's draw commands the source of indirect draws."""

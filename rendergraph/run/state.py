@@ -54,6 +54,10 @@ class Recorder:
             self._state[key] = value
             self.calls.append((function, arguments))
 
+    def forget(self, key: Hashable) -> None:
+        """What ``key`` is set to changes from frame to frame: the next ``set`` must not trust it."""
+        self._state.pop(key, None)
+
     def take(self) -> tuple[Call, ...]:
         """The calls since the last time."""
         taken, self.calls = tuple(self.calls), []

@@ -141,13 +141,16 @@ def _texture_ref(use: TextureUse, place: tuple[int, int]) -> tuple[int, int, int
     return (*place, use.uv_set, int(use.wrap[0]) | int(use.wrap[1]) << 2, (*use.offset, *use.scale))
 
 
-def pack_lights(scene: Scene) -> bytes:
-    """``LIGHT[lights]``; one black dummy when there are none, so that the buffer is never empty."""
+def pack_lights(scene: Scene, turn: float = 0.0) -> bytes:
+    """``LIGHT[lights]``; one black dummy when there are none, so that the buffer is never empty.
+
+    ``turn``: how much of their circles moving lights have run.
+    """
     packed = np.zeros(max(1, len(scene.lights)), dtype=LIGHT)
     packed["intensity"][:, 3] = MINIMUM_DISTANCE
     packed["axis_outer"][:] = (0.0, -1.0, 0.0, _POINT)
     for row, light in zip(packed, scene.lights, strict=False):
-        row["position_radius"] = (*light.position, light.radius)
+        row["position_radius"] = (*light.position_at(turn), light.radius)
         row["intensity"][:3] = light.intensity
         if light.outer is not None:
             axis = np.asarray(light.axis, dtype=np.float64)

@@ -170,7 +170,14 @@ def _apply_lights(scene: Scene, model: LightsModel, frame_seed: int, position: P
 def _scattered(scene: Scene, points: PointsModel, seed: int) -> list[Light]:
     low, high = light_volume(scene)
     return scatter_lights(
-        points.count, low, high, seed=seed, intensity=points.intensity, radius=points.radius, cutoff=points.cutoff
+        points.count,
+        low,
+        high,
+        seed=seed,
+        intensity=points.intensity,
+        radius=points.radius,
+        cutoff=points.cutoff,
+        circle=points.circle,
     )
 
 

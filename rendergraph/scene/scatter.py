@@ -18,12 +18,21 @@ _NEAREST = 0.01  # metres: a light always reaches a little
 
 
 def scatter_lights(
-    count: int, low: F64, high: F64, *, seed: int, intensity: float, radius: float | None, cutoff: float
+    count: int,
+    low: F64,
+    high: F64,
+    *,
+    seed: int,
+    intensity: float,
+    radius: float | None,
+    cutoff: float,
+    circle: float = 0.0,
 ) -> list[Light]:
     """``count`` point lights spread evenly over the box ``low``..``high`` (metres), in saturated, distinct hues.
 
     Without a ``radius`` a light reaches as far as its irradiance ``intensity / distance^2`` exceeds ``cutoff``. A
     larger count keeps the first lights where and as they were. Every light's brightest channel is ``intensity``.
+    ``circle``: radius of the circles they run, metres; neighbours in number run opposite ways.
     """
     rng = np.random.default_rng(seed)
     shift, hue_shift = rng.random(3), rng.random()
@@ -32,8 +41,8 @@ def scatter_lights(
     colors = _saturated((hue_shift + number * _GOLDEN) % 1.0, 0.7 + 0.3 * ((number * _R3[0]) % 1.0)) * intensity
     reach = radius if radius is not None else max(math.sqrt(intensity / cutoff), _NEAREST)
     return [
-        Light((x, y, z), (r, g, b), reach)
-        for (x, y, z), (r, g, b) in zip(positions.tolist(), colors.tolist(), strict=True)
+        Light((x, y, z), (r, g, b), reach, circle=-circle if index % 2 else circle, phase=index * _GOLDEN % 1.0)
+        for index, ((x, y, z), (r, g, b)) in enumerate(zip(positions.tolist(), colors.tolist(), strict=True))
     ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Protocol
@@ -178,6 +179,15 @@ class Light:
     axis: tuple[float, float, float] = (0.0, -1.0, 0.0)
     inner: float = 0.0
     outer: float | None = None
+    circle: float = 0.0  # metres: radius of the level circle it runs around `position`; negative for clockwise
+    phase: float = 0.0  # turns: where on the circle it starts
+
+    def position_at(self, turn: float) -> tuple[float, float, float]:
+        """World position after ``turn`` of a circle (0 at the first frame), metres; ``position`` for a fixed light."""
+        angle = 2.0 * math.pi * (math.copysign(turn, self.circle) + self.phase)
+        x, y, z = self.position
+        reach = abs(self.circle)
+        return (x + reach * math.cos(angle), y, z + reach * math.sin(angle)) if reach else self.position
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 import ctypes
 from collections import Counter
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from rendergraph.device.context import open_device
 from rendergraph.device.gl import SIGNATURES
 from rendergraph.document.load import load_document
 from rendergraph.run.render import RenderOptions, render_document
+from rendergraph.run.result import SteadyState
 
 pytestmark = pytest.mark.gpu
 
@@ -147,3 +149,20 @@ def test_a_run_leaves_the_contexts_state_as_it_was_opened() -> None:
     assert gl.integer(0x0B72) == 1  # depth write mask
     assert not any(gl.glIsEnabled(capability) for capability in (0x0B71, 0x0B44, 0x8037, 0x864F, 0x0BE2))
     assert (gl.integer(0x0B46), gl.integer(0x8B8D), gl.integer(0x8CA6)) == (0x0901, 0, 0)
+
+
+def test_moving_lights_move_and_upload_nothing() -> None:
+    points = "scene.lights.points={count: 24, seed: 3, intensity: 1.5, circle: 1.5}"
+    document = load_document("deferred_lighting", ["scene.detail=0.05", points, "outputs.image.file=f_{frame}.png"])
+    result = render_document(document, RenderOptions(size=(96, 54), frames=4, samples=0))
+    frames = [result.images[f"image@{i}"].astype(int) for i in range(4)]
+    assert all(np.abs(a - b).max() > 20 for a, b in pairwise(frames))
+    assert result.steady == SteadyState(0, 0, 0)
+    fixed = [
+        "scene.detail=0.05",
+        points.replace("1.5}", "0}"),
+        "passes.tonemap.set.dither=none",
+    ]  # dither has a frame's seed
+    still = load_document("deferred_lighting", fixed)
+    images = [render_document(still, RenderOptions(size=(96, 54), frames=n, samples=0)).images["image"] for n in (1, 3)]
+    assert (images[0] == images[1]).all()

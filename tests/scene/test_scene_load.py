@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from rendergraph.document.models import SceneModel
 from rendergraph.plan.graph import Position
 from rendergraph.scene.load import LoadedScene, light_volume, load_scene
 from rendergraph.scene.scatter import scatter_lights
+from rendergraph.scene.scene import Light
 
 HERE = Position("graph.yaml", 7, 11)
 THERE = Position("graph.yaml", 9, 3)
@@ -295,3 +297,13 @@ def test_a_scene_with_nothing_to_draw_is_noted(tmp_path: Path) -> None:
 def _gltf(folder: Path) -> LoadedScene:
     (folder / "scene.glb").write_bytes(full(TinyGltf(folder)).glb())
     return load("scene.glb", folder)
+
+
+def test_a_moving_light_runs_its_circle_and_comes_back() -> None:
+    light = Light((1.0, 2.0, 3.0), (1.0, 1.0, 1.0), 5.0, circle=2.0, phase=0.25)
+    assert np.allclose(light.position_at(0.0), (1.0, 2.0, 5.0))
+    assert np.allclose(light.position_at(0.25), (-1.0, 2.0, 3.0))
+    assert np.allclose(light.position_at(1.0), light.position_at(0.0))
+    backwards = replace(light, circle=-2.0)
+    assert np.allclose(backwards.position_at(0.25), (3.0, 2.0, 3.0))
+    assert replace(light, circle=0.0).position_at(0.4) == (1.0, 2.0, 3.0)
