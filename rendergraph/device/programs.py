@@ -17,6 +17,7 @@ from rendergraph.device import enums as e
 from rendergraph.device.context import Device
 from rendergraph.device.gl import GL
 from rendergraph.device.includes import FileTable, preprocess
+from rendergraph.device.interrupts import held_back
 from rendergraph.device.reflection import Block, Interface, Uniform, Unit, reflect
 from rendergraph.device.shader_errors import decode_compile_log
 from rendergraph.document.messages import RenderGraphError, diagnose
@@ -149,10 +150,11 @@ def _link(
     label = " + ".join(path.name for _, path in program.stages)
     sources = {f"{stage}_shader": source for stage, (source, _) in expanded.items()}
     try:
-        if program.is_compute:
-            handle = device.ctx.compute_shader(sources["compute_shader"])
-        else:
-            handle = device.ctx.program(**sources)
+        with held_back():
+            if program.is_compute:
+                handle = device.ctx.compute_shader(sources["compute_shader"])
+            else:
+                handle = device.ctx.program(**sources)
     except moderngl.Error as error:
         device.debug.take_errors()
         raise RenderGraphError(_explain(str(error), label, expanded, position)) from None
