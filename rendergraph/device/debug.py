@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Final
 
 from rendergraph.device import enums as e
-from rendergraph.device.gl import DEBUG_CALLBACK, GL
+from rendergraph.device.gl import DEBUG_CALLBACK, GL, Call
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.plan.graph import Position
 
@@ -38,27 +38,43 @@ class DebugMessage:
 class Scope:
     """A debug group while entered; make it once and enter it every frame. Leaving it raises what was collected."""
 
-    __slots__ = ("_debug", "_label", "label", "position")
+    __slots__ = ("_debug", "_pop", "_push", "label", "position")
 
     def __init__(self, debug: DebugLog, label: str, position: Position | None) -> None:
         self._debug = debug
-        self._label = label.encode()[:_LONGEST_LABEL]
+        text = label.encode()[:_LONGEST_LABEL]
+        self._push = debug.gl.repeated(debug.gl.glPushDebugGroup, (e.DEBUG_SOURCE_APPLICATION, 0, -1, text))
+        self._pop, _ = debug.gl.repeated(debug.gl.glPopDebugGroup)
         self.label = label
         self.position = position
 
     def __enter__(self) -> Scope:
-        debug = self._debug
-        debug.stack.append(self)
-        debug.push(e.DEBUG_SOURCE_APPLICATION, 0, -1, self._label)
+        self._debug.stack.append(self)
+        push, arguments = self._push
+        push(*arguments)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._pop()
+        self._debug.stack.pop()
+        if self._debug.errors and kind is None:
+            self._debug.raise_errors()
+
+    def run(self, calls: tuple[Call, ...]) -> None:
+        """Make calls inside the scope: what entering and leaving would do, without the cost of a ``with``."""
         debug = self._debug
-        debug.pop()
-        debug.stack.pop()
-        if debug.errors and kind is None:
+        debug.stack.append(self)
+        push, arguments = self._push
+        push(*arguments)
+        try:
+            for function, arguments in calls:
+                function(*arguments)
+        finally:
+            self._pop()
+            debug.stack.pop()
+        if debug.errors:
             debug.raise_errors()
 
 
@@ -67,8 +83,6 @@ class DebugLog:
 
     def __init__(self, gl: GL) -> None:
         self.gl = gl
-        self.push = gl.glPushDebugGroup
-        self.pop = gl.glPopDebugGroup
         self.stack: list[Scope] = []
         self.errors: list[DebugMessage] = []
         self.warnings: list[DebugMessage] = []  # undefined behaviour the driver noticed

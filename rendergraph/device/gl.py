@@ -217,6 +217,10 @@ SIGNATURES: Final[dict[str, str]] = {
 }  # fmt: skip
 
 
+#: A function and its arguments, to be called later as ``function(*arguments)``.
+Call = tuple[Callable[..., Any], tuple[Any, ...]]
+
+
 class Loader(Protocol):
     """What glcontext's backend object offers: the address of an entry point of the current context."""
 
@@ -227,13 +231,29 @@ class GL:
     """The entry points of :data:`SIGNATURES` as attributes. Calls release the GIL and check argument types."""
 
     def __init__(self, loader: Loader) -> None:
+        # By identity: ctypes functions have no hash. Each row keeps its own function alive.
+        self._repeated: dict[int, tuple[Callable[..., Any], Callable[..., Any], str]] = {}
         for name, signature in SIGNATURES.items():
             result, _, arguments = signature.partition(" ")
-            prototype = CFUNCTYPE(_TYPES[result], *(_TYPES[letter] for letter in arguments))
-            setattr(self, name, prototype(loader.load(name)))
+            address = loader.load(name)
+            function = CFUNCTYPE(_TYPES[result], *(_TYPES[letter] for letter in arguments))(address)
+            setattr(self, name, function)
+            if result == "v":
+                self._repeated[id(function)] = function, CFUNCTYPE(None)(address), arguments
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         raise AttributeError(f"{name} has no row in rendergraph.device.gl.SIGNATURES")
+
+    def repeated(self, function: Callable[..., Any], arguments: tuple[Any, ...] = ()) -> Call:
+        """A call to be made again and again: its arguments are checked and converted now and never after, which more
+        than halves what a call costs. Functions that are not of this table, or give something back, stay as they are.
+        """
+        if id(function) not in self._repeated:
+            return function, arguments
+        _, bare, letters = self._repeated[id(function)]
+        if len(arguments) != len(letters) and arguments:
+            raise TypeError(f"{len(arguments)} arguments given, {len(letters)} expected")
+        return bare, tuple(_converted(*pair) for pair in zip(letters, arguments, strict=False))
 
     def create(self, create: str, *target: int) -> int:
         """One new object by a ``glCreate*`` or ``glGen*`` entry point; its name."""
@@ -255,3 +275,13 @@ class GL:
             self.glGetIntegeri_v(parameter, index, ctypes.byref(narrow))
             value.value = narrow.value
         return value.value
+
+
+def _converted(letter: str, value: Any) -> Any:
+    """An argument that ctypes passes right without being told its type: C integers, strings and null as they are."""
+    kind = _TYPES[letter]
+    if letter in "uib":
+        return kind(value).value
+    if letter == "s" or value is None:
+        return value
+    return value if isinstance(value, ctypes.Array) else kind(value)

@@ -75,7 +75,7 @@ class Variant:
         """The same command less its draws and dispatches: state, bindings, clears and copies stay."""
         if id(command) not in self._skipped:
             gl = self._device.gl
-            work = [getattr(gl, name) for name in _WORK]
+            work = [gl.repeated(getattr(gl, name))[0] for name in _WORK]
             calls = tuple(
                 call
                 for call in command.calls

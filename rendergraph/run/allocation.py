@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,14 +28,16 @@ class Allocation:
     def __init__(self, device: Device, plan: Plan) -> None:
         self._textures: dict[tuple[str, int], Texture] = {}
         self._buffers: dict[tuple[str, int], Buffer] = {}
-        self.slots = [create_texture(device, slot.desc, f"slot {i}") for i, slot in enumerate(plan.slots)]
+        slots = _create_slots(device, plan)
         heap = create_buffer(device, plan.heap_bytes, "transient buffers") if plan.heap_bytes else None
         history = {r.previous_of: r for r in plan.graph.resources.values() if r.kind is Kind.HISTORY}
         self.parities = 2 if any(name in plan.lifetimes for r in history.values() for name in (r.name,)) else 1
         for name in plan.lifetimes:
             resource = plan.graph.resources[name]
             if resource.kind is Kind.TRANSIENT and name in plan.slot_of:
-                self._place(device, plan, resource)
+                assert isinstance(resource.desc, TextureDesc)
+                view = slots[plan.slot_of[name], resource.desc]
+                self._share(name, replace(view, label=name))
             elif resource.kind is Kind.TRANSIENT and name in plan.buffer_of:
                 assert heap is not None
                 place = plan.buffer_of[name]
@@ -59,14 +62,6 @@ class Allocation:
         return (name, 0) in self._textures
 
     # ---- kinds of storage
-
-    def _place(self, device: Device, plan: Plan, resource: Resource) -> None:
-        slot = self.slots[plan.slot_of[resource.name]]
-        assert isinstance(resource.desc, TextureDesc)
-        # A view even for the slot's own format: its label then names the resource, not the slot, in a debugger.
-        viewable = resource.desc.samples == 1 or resource.desc.format == slot.desc.format
-        assert viewable, f"{resource.name} cannot view slot {plan.slot_of[resource.name]}"
-        self._share(resource.name, create_view(device, slot, resource.desc, resource.name))
 
     def _own(self, device: Device, resource: Resource) -> None:
         if isinstance(resource.desc, BufferDesc):
@@ -101,6 +96,26 @@ class Allocation:
                 self._textures[name, parity] = storage
             else:
                 self._buffers[name, parity] = storage
+
+
+def _create_slots(device: Device, plan: Plan) -> dict[tuple[int, TextureDesc], Texture]:
+    """Every slot's texture, and one view of it for each other description among its tenants.
+
+    Tenants alike share one texture object and with it their framebuffers: a driver pays for every change of either.
+    A texture's label names all the resources that it carries in turn.
+    """
+    textures: dict[tuple[int, TextureDesc], Texture] = {}
+    for index, slot in enumerate(plan.slots):
+        alike: dict[TextureDesc, list[str]] = {}
+        for name in slot.tenants:
+            desc = plan.graph.resources[name].desc
+            assert isinstance(desc, TextureDesc)
+            alike.setdefault(desc, []).append(name)
+        own = alike.pop(slot.desc, [f"slot {index}"])
+        storage = textures[index, slot.desc] = create_texture(device, slot.desc, ", ".join(own))
+        for desc, names in alike.items():
+            textures[index, desc] = create_view(device, storage, desc, ", ".join(names))
+    return textures
 
 
 def load_texels(file: Path, desc: TextureDesc) -> Pixels:

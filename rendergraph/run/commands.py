@@ -11,6 +11,7 @@ from rendergraph.device.buffers import Buffer, clear_buffer, copy_buffer, poison
 from rendergraph.device.context import Device
 from rendergraph.device.debug import Scope
 from rendergraph.device.framebuffers import Framebuffer, clear_color, clear_depth, create_framebuffer
+from rendergraph.device.gl import Call
 from rendergraph.device.host_copies import buffer_through_host, texture_through_host
 from rendergraph.device.programs import LinkedProgram
 from rendergraph.device.textures import (
@@ -43,7 +44,7 @@ from rendergraph.plan.plan import Barrier, Plan
 from rendergraph.run.allocation import Allocation
 from rendergraph.run.bindings import Bindings
 from rendergraph.run.geometry import SceneGeometry
-from rendergraph.run.state import Call, Recorder
+from rendergraph.run.state import Recorder
 
 _TOPOLOGY = {"points": 0, "lines": 1, "line_strip": 3, "triangles": 4, "triangle_strip": 5, "patches": 14}
 
@@ -58,9 +59,7 @@ class Command:
 
     def run(self) -> None:
         """Make the calls."""
-        with self.scope:
-            for function, arguments in self.calls:
-                function(*arguments)
+        self.scope.run(self.calls)
 
 
 class CommandBuilder:
@@ -237,7 +236,11 @@ class CommandBuilder:
     def _framebuffer(self, subpass: SubPass, colors: list[Access], depth: Access | None) -> Framebuffer:
         color_targets = [(self._texture(a.resource), a.mip or 0, a.layer) for a in colors]
         depth_target = (self._texture(depth.resource), depth.layer) if depth else None
-        key = (tuple(color_targets), depth_target)
+        # Resources that share one texture are one attachment, whatever their names.
+        key = (
+            tuple((texture.glo, mip, layer) for texture, mip, layer in color_targets),
+            depth_target and (depth_target[0].glo, depth_target[1]),
+        )
         if key not in self._framebuffers:
             frame = self._plan.graph.frame
             self._framebuffers[key] = create_framebuffer(

@@ -105,9 +105,10 @@ class Runner:
         """
         last: dict[int, list[str]] = {}
         kept = set(capture)
-        for name, life in self._plan.lifetimes.items():
-            if name in kept or (inspect is not None and self._storage.is_texture(name)):
-                last.setdefault(life.last, []).append(name)
+        if kept or inspect is not None:
+            for name, life in self._plan.lifetimes.items():
+                if name in kept or (inspect is not None and self._storage.is_texture(name)):
+                    last.setdefault(life.last, []).append(name)
         captured = {}
         for position, command in enumerate(self.commands_of(index)):
             command.run()

@@ -6,10 +6,8 @@ from collections.abc import Callable, Hashable
 from typing import Any
 
 from rendergraph.device import enums
-from rendergraph.device.gl import GL
+from rendergraph.device.gl import GL, Call
 from rendergraph.plan.graph import Blend, State
-
-Call = tuple[Callable[..., Any], tuple[Any, ...]]
 
 _FACTORS = {
     "zero": 0, "one": 1, "src_color": 0x0300, "one_minus_src_color": 0x0301, "src_alpha": 0x0302,
@@ -46,13 +44,13 @@ class Recorder:
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> None:
         """Record a call that is made every frame."""
-        self.calls.append((function, arguments))
+        self.calls.append(self.gl.repeated(function, arguments))
 
     def set(self, key: Hashable, value: Any, function: Callable[..., Any], *arguments: Any) -> None:
         """Record a call that sets ``key`` to ``value``, unless it is so already."""
         if self._state.get(key, self) != value:
             self._state[key] = value
-            self.calls.append((function, arguments))
+            self.calls.append(self.gl.repeated(function, arguments))
 
     def forget(self, key: Hashable) -> None:
         """What ``key`` is set to changes from frame to frame: the next ``set`` must not trust it."""

@@ -96,6 +96,16 @@ def test_normal_survives_its_format(device: Device, tmp_path: Path, format: str)
         assert error.max() > 0.5 * LIMITS[format]  # a test that measures the format, not nothing
 
 
+AXES = PACK.replace("n = normalize(n);", "n = vec3(0.0); n[index % 3u] = (index & 1u) == 0u ? 1.0 : -1.0;")
+
+
+def test_signed_formats_keep_the_axes_exactly(device: Device, tmp_path: Path) -> None:
+    """Walls and floors: a signed format has a zero, an unsigned one does not (the twin)."""
+    assert "n = vec3(0.0)" in AXES
+    assert packing_error(tmp_path, "rg16_snorm", AXES).max() < 1e-5
+    assert packing_error(tmp_path, "rg16", AXES).max() > 5e-4
+
+
 def test_sign_of_zero_breaks_the_fold(device: Device, tmp_path: Path) -> None:
     """The twin of the octahedral test: with sign(0) = 0 the -z pole and the folded axes come out elsewhere."""
     bad = PACK.replace(
