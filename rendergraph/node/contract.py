@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar, get_args
 
 from rendergraph.node.params import Params
+from rendergraph.node.reference import Extreme, Reference
 
 if TYPE_CHECKING:
     from rendergraph.node.builder import Builder
@@ -41,6 +42,9 @@ class Node(ABC, Generic[ParamsT]):
     """Base class of every node: ``class Blur(Node[BlurParams])`` in ``nodes/blur/__init__.py``, found by its folder.
 
     ``open_ports`` nodes take any port name, for users' own shaders. ``needs_scene`` nodes draw geometry or read lights.
+    ``reference`` names the truth that its outputs are held against, ``exact`` nodes have none to approximate: their
+    outputs equal it. ``bounds`` are the least and largest value that an output port may ever hold, and ``extremes`` the
+    cases beyond the common ones (measure/stress) that it must survive.
     """
 
     name: ClassVar[str] = ""  # set by discovery to the folder's name
@@ -50,6 +54,10 @@ class Node(ABC, Generic[ParamsT]):
     params_type: ClassVar[type[Params]] = Params  # set from the type argument
     open_ports: ClassVar[bool] = False
     needs_scene: ClassVar[bool] = False
+    reference: ClassVar[Reference | None] = None
+    exact: ClassVar[bool] = False
+    bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
+    extremes: ClassVar[tuple[Extreme, ...]] = ()
 
     def __init__(self, params: ParamsT) -> None:
         self.params = params

@@ -10,7 +10,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from rendergraph.document.messages import barriers, device, graph, records, resources, scene, syntax
+from rendergraph.document.messages import (
+    accuracy,
+    barriers,
+    conformance,
+    device,
+    extremes,
+    graph,
+    records,
+    resources,
+    scene,
+    sweeps,
+    syntax,
+)
 from rendergraph.document.messages.message import Message
 from rendergraph.plan.graph import Position
 
@@ -46,6 +58,6 @@ class RenderGraphError(Exception):
 
 MESSAGES: Final[dict[str, Message]] = {
     code: row
-    for rows in (syntax, graph, resources, barriers, device, scene, records)
+    for rows in (syntax, graph, resources, barriers, device, scene, records, accuracy, sweeps, extremes, conformance)
     for code, row in rows.ROWS.items()
 }
