@@ -6,7 +6,6 @@ a moving camera uploads nothing either.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,8 @@ from rendergraph.device.context import Device
 from rendergraph.device.programs import LinkedProgram
 from rendergraph.device.textures import Texture, create_texture, upload_texture
 from rendergraph.plan.graph import Target, TextureDesc
+from rendergraph.run.batches import Batch, cut_batches
+from rendergraph.run.vertex_inputs import create_vertex_array
 from rendergraph.scene.draw_queues import draw_runs
 from rendergraph.scene.gpu_layout import (
     TexturePlacement,
@@ -28,10 +29,6 @@ from rendergraph.scene.gpu_layout import (
 )
 from rendergraph.scene.scene import Camera, Scene
 
-#: Vertex inputs: name, components, offset in the attribute stream (positions have a stream of their own, which is all
-#: that depth-only passes read).
-ATTRIBUTES = (("in_normal", 3, 0), ("in_tangent", 4, 12), ("in_uv0", 2, 28), ("in_uv1", 2, 36), ("in_color", 4, 44))
-ATTRIBUTE_STRIDE = 60
 COMMAND_BYTES = 20
 
 #: Most bytes of draw commands kept for a moving camera; beyond it neighbouring frames share an order.
@@ -40,21 +37,10 @@ COMMAND_BUDGET = 64 * 2**20
 LIGHT_BUDGET = 64 * 2**20
 
 
-@dataclass(frozen=True, slots=True)
-class Batch:
-    """A run of draw commands with one culling rule: first command and count, within one frame's commands, and the
-    triangles (replays included) they draw.
-    """
-
-    first: int
-    count: int
-    double_sided: bool
-    mirrored: bool
-    triangles: int
-
-
 class SceneGeometry:
-    """The uploaded scene. ``blocks`` are the storage blocks a shader may name; ``textures`` are ``u_textures``."""
+    """The uploaded scene. ``blocks`` are the blocks a shader may name; of ``textures``, :meth:`draw` binds those that
+    a batch needs as ``u_textures``.
+    """
 
     def __init__(self, device: Device, scene: Scene, cameras: list[Camera], replays: frozenset[int]) -> None:
         """``replays``: the instance counts that scene draws of the plan use (1, or the number of cascades)."""
@@ -74,8 +60,8 @@ class SceneGeometry:
             "Lights": self._pack_lights(scene, len(cameras)),
         }
         self._vertex_arrays: dict[tuple[tuple[str, int], ...], int] = {}
-        self._build_commands(scene, cameras, replays)
-        self._frame_offset = 0
+        self._build_commands(scene, cameras, replays, placement)
+        self._block = 0
 
     # ---- lights
 
@@ -92,37 +78,24 @@ class SceneGeometry:
         self._light_offset = 0
         return create_buffer(self._device, b"".join(blocks) if self.lights_move else first, "Lights")
 
-    def bind_lights(self, binding: int) -> None:
-        """Let a storage binding point see this frame's lights."""
-        self._gl.glBindBufferRange(
-            enums.SHADER_STORAGE_BUFFER, binding, self.blocks["Lights"].glo, self._light_offset, self._light_bytes
-        )
+    def bind_lights(self, target: int, binding: int) -> None:
+        """Let a binding point of storage or uniform blocks see this frame's lights."""
+        self._gl.glBindBufferRange(target, binding, self.blocks["Lights"].glo, self._light_offset, self._light_bytes)
 
     # ---- draw commands
 
-    def _build_commands(self, scene: Scene, cameras: list[Camera], replays: frozenset[int]) -> None:
+    def _build_commands(
+        self, scene: Scene, cameras: list[Camera], replays: frozenset[int], placement: TexturePlacement
+    ) -> None:
         eyes = [camera.position for camera in cameras]
         distinct = list(dict.fromkeys(eyes))
         per_frame = max(1, len(scene.instances) * COMMAND_BYTES * len(replays))
         kept = distinct[:: max(1, -(-len(distinct) * per_frame // COMMAND_BUDGET))]
-        self.batches: dict[tuple[str, int], tuple[Batch, ...]] = {}
-        blocks = []
-        for eye in kept:
-            queues = draw_runs(scene, eye)
-            parts, first = [], 0
-            for replay in sorted(replays):
-                for queue, runs in queues.items():
-                    batches = []
-                    for run in runs:
-                        commands = run.commands.copy()
-                        commands["instance_count"] *= replay
-                        indices = commands["count"].astype(np.int64) * commands["instance_count"]
-                        triangles = int(indices.sum()) // 3
-                        batches.append(Batch(first, len(commands), run.double_sided, run.mirrored, triangles))
-                        parts.append(commands)
-                        first += len(commands)
-                    self.batches[queue, replay] = tuple(batches)
-            blocks.append(np.concatenate(parts).tobytes() if parts else b"")
+        # Of each eye: where blended draws of unlike state change places, their runs are cut elsewhere.
+        names = [texture.glo for texture in self.textures]
+        cut = [cut_batches(draw_runs(scene, eye, placement), replays, names) for eye in kept]
+        self._batches = [batches for batches, _ in cut]
+        blocks = [commands for _, commands in cut]
         self._frame_bytes = len(blocks[0]) if blocks else 0
         self._commands = create_buffer(self._device, b"".join(blocks) or bytes(COMMAND_BYTES), "scene draw commands")
         where = {eye: index for index, eye in enumerate(kept)}
@@ -133,19 +106,41 @@ class SceneGeometry:
 
     def begin_frame(self, index: int) -> None:
         """Use the commands sorted for this frame's camera."""
-        block = self._frame_block[min(index, len(self._frame_block) - 1)] if self._frame_block else 0
-        self._frame_offset = block * self._frame_bytes
+        self._block = self._frame_block[min(index, len(self._frame_block) - 1)] if self._frame_block else 0
         self._light_offset = self._light_block[min(index, len(self._light_block) - 1)] * self._light_stride
 
-    def bind_commands(self) -> None:
-        """Make the scene's draw commands the source of indirect draws."""
-        self._gl.glBindBuffer(enums.DRAW_INDIRECT_BUFFER, self._commands.glo)
+    def batches(self, queue: str, replays: int) -> tuple[Batch, ...]:
+        """This frame's batches of a queue; none for a frame without a camera."""
+        return self._batches[self._block][queue, replays] if self._batches else ()
 
-    def draw(self, batch: Batch, patches: bool = False) -> None:
-        """Issue a batch with the state that is bound; ``patches`` of three vertices feed tessellation shaders."""
+    def draw(self, queue: str, replays: int, cull: str, texture_units: range, patches: bool) -> None:
+        """Issue this frame's batches of a queue with the program that is bound.
+
+        Sets culling (``cull``, but none where double-sided), the front face and the texture arrays of the materials'
+        first slots, one of ``texture_units`` each, and leaves them as the last batch needs them. ``patches`` of three
+        vertices feed tessellation shaders.
+        """
+        gl = self._gl
         mode = enums.PATCHES if patches else enums.TRIANGLES
-        offset = self._frame_offset + batch.first * COMMAND_BYTES
-        self._gl.glMultiDrawElementsIndirect(mode, enums.UNSIGNED_INT, offset, batch.count, COMMAND_BYTES)
+        frame = self._block * self._frame_bytes
+        # An indirect draw of this frame's own arguments may have bound another buffer.
+        gl.glBindBuffer(enums.DRAW_INDIRECT_BUFFER, self._commands.glo)
+        gl.glCullFace(enums.FRONT if cull == "front" else enums.BACK)
+        culls, faces = None, None
+        bound: dict[int, int] = {}
+        for batch in self.batches(queue, replays):
+            if culls is not (culled := cull != "none" and not batch.double_sided):
+                culls = culled
+                (gl.glEnable if culled else gl.glDisable)(enums.CULL_FACE)
+            if faces is not batch.mirrored:
+                faces = batch.mirrored
+                gl.glFrontFace(enums.CW if faces else enums.CCW)
+            for slot, texture in batch.textures:
+                if slot < len(texture_units) and bound.get(slot) != texture:
+                    bound[slot] = texture
+                    gl.glBindTextureUnit(texture_units[slot], texture)
+            offset = frame + batch.first * COMMAND_BYTES
+            gl.glMultiDrawElementsIndirect(mode, enums.UNSIGNED_INT, offset, batch.count, COMMAND_BYTES)
 
     # ---- vertex arrays
 
@@ -154,21 +149,9 @@ class SceneGeometry:
         inputs = tuple(sorted(program.attributes.items()))
         if inputs in self._vertex_arrays:
             return self._vertex_arrays[inputs]
-        gl = self._gl
-        array = self._device.create_object("glCreateVertexArrays", label="scene vertices")
-        gl.glVertexArrayElementBuffer(array, self._indices.glo)
-        gl.glVertexArrayVertexBuffer(array, 0, self._positions.glo, 0, 12)
-        gl.glVertexArrayVertexBuffer(array, 1, self._attributes.glo, 0, ATTRIBUTE_STRIDE)
-        layout = {"in_position": (3, 0, 0)} | {name: (size, offset, 1) for name, size, offset in ATTRIBUTES}
-        for name, location in inputs:
-            if name not in layout:
-                continue
-            size, offset, stream = layout[name]
-            gl.glEnableVertexArrayAttrib(array, location)
-            gl.glVertexArrayAttribFormat(array, location, size, enums.FLOAT, 0, offset)
-            gl.glVertexArrayAttribBinding(array, location, stream)
-        self._vertex_arrays[inputs] = array
-        return array
+        streams = self._positions, self._attributes, self.blocks["Instances"]
+        self._vertex_arrays[inputs] = create_vertex_array(self._device, inputs, streams, self._indices)
+        return self._vertex_arrays[inputs]
 
 
 def _bytes(array: npt.NDArray[Any], pad: npt.NDArray[Any]) -> bytes:
