@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 
+from rendergraph.document.collector import collector_paused
 from rendergraph.document.load import Document
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.document.overrides import SET_PREFIX
@@ -44,8 +45,9 @@ def plan_document(
     if loaded is not None:
         features = replace(loaded.scene.features(), texture_arrays=len(place_textures(loaded.scene).arrays))
     middle = time.perf_counter_ns()
-    graph, warnings = expand(document, features=features, full=full, size=size, frames=frames)
-    plan, more = compile_plan(graph, options)
+    with collector_paused():
+        graph, warnings = expand(document, features=features, full=full, size=size, frames=frames)
+        plan, more = compile_plan(graph, options)
     end = time.perf_counter_ns()
     if loaded is None:
         for subpass in plan.order:
