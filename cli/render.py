@@ -51,6 +51,9 @@ def render(
         ),
     ] = None,
     html: Annotated[bool, typer.Option("--html", help="Write report.html too: graph, times, memory, targets.")] = False,
+    bound: Annotated[
+        bool, typer.Option("--bound", help="Then run it perturbed, and record what the frame is bound by.")
+    ] = False,
     trace: Annotated[bool, typer.Option("--trace", help="Write trace.json too, for Perfetto.")] = False,
     poison: Annotated[bool, typer.Option("--poison", help="Fill every target with NaN before its first use.")] = False,
     no_alias: NoAliasOption = False,
@@ -71,6 +74,7 @@ def render(
     from rendergraph.document.load import load_document
     from rendergraph.document.whole_files import require_folder
     from rendergraph.measure.budget import check_run
+    from rendergraph.measure.perturb import perturb_document
     from rendergraph.plan.plan import PlanOptions
     from rendergraph.report.html import TargetGallery
     from rendergraph.report.tables import lifetime_table, timing_table
@@ -100,7 +104,8 @@ def render(
     )
     with progress_bar() as progress:
         result = render_document(document, options, progress)
-        written = write_result(result, document, output, page=page, trace=trace, full=full)
+        evidence = perturb_document(document, options, progress) if bound else None
+        written = write_result(result, document, output, page=page, trace=trace, full=full, bound=evidence)
     report(result.warnings)
     if format is Format.JSON:
         write_json({"timing": written.timing, "resources": written.resources, "files": [str(f) for f in written.files]})

@@ -148,7 +148,7 @@ def run_plan(
                 device.info.renderer, device.info.vendor, device.info.driver, clock.name, asdict(clock.proof)
             ),
             frames=count,
-            warnings=planned.warnings,
+            warnings=(*planned.warnings, *device.debug.take_warnings()),
             counters=counters,
         )
     finally:

@@ -17,6 +17,7 @@ from rendergraph.document.whole_files import whole_file
 from rendergraph.plan.barriers import BITS
 from rendergraph.plan.explain import all_decisions, explain_decision
 from rendergraph.plan.plan import Barrier, Plan
+from rendergraph.report.bound_text import agreement, evidence
 from rendergraph.report.drawing import drawing, svg
 from rendergraph.report.html.memory import lifetime_chart
 from rendergraph.report.html.targets import TargetGallery, target_entries
@@ -66,6 +67,8 @@ def html_page(
             barriers=[(plan.order[b.index].name, _barrier_names(b), b.hazards) for b in plan.barriers],
             decisions=list(_decisions(plan)),
             warnings=warnings,
+            agreement=agreement,
+            evidence=evidence,
         )
     )
     return text
