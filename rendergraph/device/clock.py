@@ -13,8 +13,8 @@ from rendergraph.device.clock_proof import ClockProof, prove_clock
 from rendergraph.device.context import Device
 from rendergraph.device.timestamps import create_timestamp, read_available, read_device_time, read_timestamps
 
-#: Frames whose timestamps are expected to be in flight at once.
-RING: Final = 4
+#: Frames whose timestamps wait to be read: reading costs a call a pass, and a frame that is timed should not pay it.
+RING: Final = 32
 
 
 class Clock(Protocol):
@@ -106,7 +106,7 @@ class TimestampClock:
     process_ns: list[int] = field(default_factory=list)
     submit_starts: list[int] = field(default_factory=list)
     starts: list[list[int]] = field(default_factory=list)
-    _free: list[list[int]] = field(default_factory=lambda: [[] for _ in range(RING)])
+    _free: list[list[int]] = field(default_factory=list)
     _queries: list[int] = field(default_factory=list)
     # (queries, passes, host time less device time), oldest first
     _pending: list[tuple[list[int], int, int]] = field(default_factory=list)
@@ -121,7 +121,7 @@ class TimestampClock:
 
     def begin_frame(self) -> None:
         """Start a frame. Where the device is behind by more frames than the ring holds, it grows: nothing waits."""
-        self._queries = self._free.pop(0) if self._free else []
+        self._queries = self._free.pop() if self._free else []
         self.submit_ns, self.process_ns, self.submit_starts, self._cpu = [], [], [], []
         self._ahead = time.perf_counter_ns() - read_device_time(self.device)
 
@@ -141,7 +141,7 @@ class TimestampClock:
         self._stamp(self._queries[index], e.TIMESTAMP)
 
     def end_frame(self) -> list[int] | None:
-        """The oldest unread frame's nanoseconds a pass, if the device has finished it."""
+        """The oldest unread frame's nanoseconds a pass, if the ring is full and the device has finished it."""
         self._mark()
         self.submit_ns = [b - a for a, b in pairwise(self.submit_starts)]
         self.process_ns = [b - a for a, b in pairwise(self._cpu)]
@@ -149,7 +149,7 @@ class TimestampClock:
         self._pending.append((self._queries, len(self.submit_ns), self._ahead))
         self.device.gl.glFlush()
         queries, count, _ = self._pending[0]
-        if not read_available(self.device, queries[count]):
+        if len(self._pending) <= RING or not read_available(self.device, queries[count]):
             return None
         self._frames.append(self._collect())
         return self._frames[-1]
