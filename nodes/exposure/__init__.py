@@ -11,11 +11,34 @@ from rendergraph.node.bindings import Binding, read_buffer, sample, update_buffe
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
+from rendergraph.node.reference import Extreme, Measure, Quantity, Reference
 from rendergraph.nodes.exposure.buffer import require_exposure
 
 BINS = 256
 TILE = 32  # texels a side that one work group of 16 x 16 threads reads
 PARTIAL_BYTES = 8  # sum and count of one work group
+
+
+EXTREMES = (
+    Extreme("average", "The plain mean.", ("passes.meter.set.mode=average",)),
+    Extreme("manual_dark", "Thirty-two stops down.",
+            ("passes.meter.set.mode=manual", "passes.meter.set.compensation=-32")),
+    Extreme("manual_bright", "Thirty-two stops up.",
+            ("passes.meter.set.mode=manual", "passes.meter.set.compensation=32")),
+    Extreme("widest_range", "Forty-eight stops in 256 bins.",
+            ("passes.meter.set.min_ev=-24", "passes.meter.set.max_ev=24")),
+    Extreme("narrowest_range", "Nearly every texel beyond the range.",
+            ("passes.meter.set.min_ev=0", "passes.meter.set.max_ev=0.001")),
+    Extreme("brightest_texels", "The brightest hundredth alone.",
+            ("passes.meter.set.low=0.99", "passes.meter.set.high=1")),
+    Extreme("darkest_texels", "The darkest hundredth alone.", ("passes.meter.set.low=0", "passes.meter.set.high=0.01")),
+    Extreme("coarsest_stride", "One texel of 256.", ("passes.meter.set.stride=16",)),
+    Extreme("frozen", "An exposure that never moves.", ("passes.meter.set.brighten=0", "passes.meter.set.darken=0")),
+    Extreme("at_once", "An exposure without inertia.", ("passes.meter.set.brighten=1", "passes.meter.set.darken=1")),
+    Extreme("full_float", "Radiance of 32 bits.", ("resources.hdr.format=rgba32f",)),
+    Extreme("no_range", "A range that holds nothing.", ("passes.meter.set.min_ev=14",), refused="RG205"),
+    Extreme("short_buffer", "A buffer too small.", ("resources.exposure.bytes=12",), refused="RG225"),
+)  # fmt: skip
 
 
 class ExposureParams(Params):
@@ -57,6 +80,26 @@ class Exposure(Node[ExposureParams]):
         ),
     }
     outputs = {"exposure": Port("Scale, log luminance and texels metered: 16 bytes (exposure.glsl).", buffer=True)}
+    reference = Reference(
+        "brute_force",
+        {
+            "exposure": Measure(
+                Quantity.SCALAR, "max", 0.0472, "Exposure from the exact trimmed mean of every texel's log luminance.",
+                unit="stops",
+            ),
+            "meter": Measure(
+                Quantity.SCALAR, "max", 0.005, "This frame's measurement, by the meter's own bins and stride in "
+                "float64.", unit="stops", ideal=False,
+            ),
+            "adaptation": Measure(
+                Quantity.SCALAR, "max", 5e-5, "Adaptation from the last exposure, and the scale, in float64.",
+                unit="stops", ideal=False,
+            ),
+            "texels": Measure(Quantity.IDENTITY, "mismatch_rate", 0.0, "Finite texels metered.", ideal=False),
+        },
+        source="Krawczyk, Myszkowski and Seidel 2005",
+    )  # fmt: skip
+    extremes = EXTREMES
 
     def build(self, b: Builder) -> None:
         """Manual: one dispatch. Average: per-tile sums, then their sum. Histogram: clear, count, reduce."""

@@ -29,8 +29,12 @@ class Spending:
     draws: Mapping[str, int] = field(default_factory=dict)
 
 
-def check_run(document: Document, timing: Mapping[str, Any], resources: Mapping[str, Any]) -> list[Diagnostic]:
-    """All limits against a run's timing and resources records: what both checks below find, errors first."""
+def check_run(
+    document: Document, timing: Mapping[str, Any], resources: Mapping[str, Any], *, judged: bool = False
+) -> list[Diagnostic]:
+    """All limits against a run's timing and resources records: what both checks below find, errors first. ``judged``:
+    errors were measured too, and their budgets are checked with them (report/accuracy_findings.py).
+    """
     passes = timing["passes"]
     spent = Spending(
         frame_ms=_median(timing["frame_ms"]["samples"]),
@@ -38,7 +42,8 @@ def check_run(document: Document, timing: Mapping[str, Any], resources: Mapping[
         steps_ms=_medians((step["name"], step["ms"]["samples"]) for entry in passes for step in entry["subpasses"]),
         draws={entry["name"]: entry["counters"]["draws"] for entry in passes},
     )
-    return _errors_first([*check_memory(document, resources), *check_spending(document, spent)])
+    found = [*check_memory(document, resources), *check_spending(document, spent)]
+    return _errors_first([finding for finding in found if not (judged and finding.code == "RG709")])
 
 
 def check_bench(document: Document, bench: Mapping[str, Any], side: str) -> list[Diagnostic]:
@@ -58,7 +63,7 @@ def check_bench(document: Document, bench: Mapping[str, Any], side: str) -> list
 def check_memory(
     document: Document, resources: Mapping[str, Any], *, assumed: bool = False, who: str = ""
 ) -> list[Diagnostic]:
-    """RG703 when a resources record exceeds the budget of memory, and RG709 for a budget that nothing can check yet.
+    """RG703 when a resources record exceeds the budget of memory, and RG709 for budgets that need references.
 
     ``assumed``: the plan is for a scene with every feature, not for the real one; RG705 then, a warning. ``who`` goes
     before the message.
@@ -78,8 +83,9 @@ def check_memory(
         }
         code = "RG705" if assumed else "RG703"
         found.append(diagnose(code, document.position("budget", "transient_mib"), **values))
-    if budget.flip is not None:
-        found.append(diagnose("RG709", document.position("budget", "flip")))
+    for what in ("flip", "error"):
+        if getattr(budget, what) not in (None, {}):
+            found.append(diagnose("RG709", document.position("budget", what), what=what))
     return found
 
 

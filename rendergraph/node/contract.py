@@ -25,7 +25,8 @@ class Port:
     ``formats`` lists what the port takes, the preferred one first (an undeclared output resource gets it); empty for a
     buffer. With both ``formats`` and ``buffer`` the port takes either. ``like`` names another port whose size this one
     must have. ``modify`` marks an output that adds to what the resource already holds. ``layers``: exact number of
-    layers, ``None`` for any.
+    layers, ``None`` for any. ``holds`` says what an output contains, in a word that nodes agree on (``scene_depth``,
+    ``emission``, ``materials``, ``sun_shadow``): a node that reads it may rely on it (``Builder.holds``).
     """
 
     help: str
@@ -36,6 +37,7 @@ class Port:
     like: str | None = None
     samples: tuple[int, ...] = (1,)
     layers: int | None = 1
+    holds: str = ""
 
 
 class Node(ABC, Generic[ParamsT]):

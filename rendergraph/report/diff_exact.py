@@ -25,7 +25,8 @@ class Direction(StrEnum):
 class ExactChange:
     """One exact difference. ``before`` and ``after`` are JSON-ready; ``text`` says it in words.
 
-    ``kind``: total, resource, sharing, lifetime, slots, barrier, order, subpass, pass, culled, counter or steady_state.
+    ``kind``: error, total, resource, sharing, lifetime, slots, barrier, order, subpass, pass, culled, counter or
+    steady_state.
     """
 
     kind: str
@@ -45,8 +46,8 @@ class ExactChange:
 
 #: Kinds from the most to the least telling.
 KINDS: Final = (
-    "total", "resource", "barrier", "counter", "steady_state", "culled", "pass", "subpass", "order", "slots", "sharing",
-    "lifetime",
+    "error", "total", "resource", "barrier", "counter", "steady_state", "culled", "pass", "subpass", "order", "slots",
+    "sharing", "lifetime",
 )  # fmt: skip
 _DIRECTIONS: Final = (Direction.WORSE, Direction.CHANGED, Direction.BETTER)
 

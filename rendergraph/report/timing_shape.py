@@ -96,6 +96,19 @@ class SteadyRecord(Part):
     bytes_uploaded: Bytes
 
 
+class SwitchRecord(Part):
+    """A frame before which the scene changed, and what that took."""
+
+    frame: Count
+    plan: Count = Field(description="Number of the plan that runs from here on; 0 is the first frame's.")
+    revisited: bool = Field(description="It ran before.")
+    objects_created: Count
+    programs_compiled: Count
+    bytes_uploaded: Bytes
+    history_kept: list[str] = Field(description="Histories handed on from the plan before.")
+    history_cleared: list[str] = Field(description="Histories that it did not have: they start from zeros.")
+
+
 class TimingRecord(Head):
     """The times of a run, with their clock, renderer and raw samples."""
 
@@ -111,3 +124,4 @@ class TimingRecord(Head):
     statistics: StatisticsRecord
     passes: list[PassRecord] = Field(description="In execution order.")
     steady_state: SteadyRecord
+    switches: list[SwitchRecord] = Field(default=[], description="Where the scene changed; absent where it did not.")

@@ -7,25 +7,16 @@ a moving camera uploads nothing either.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from rendergraph.device import enums
-from rendergraph.device.buffers import Buffer, create_buffer
+from rendergraph.device.buffers import Buffer, create_buffer, upload_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.programs import LinkedProgram
-from rendergraph.device.textures import Texture, create_texture, upload_texture
-from rendergraph.plan.graph import Target, TextureDesc
+from rendergraph.run.scene_store import PAD, SceneStore
 from rendergraph.scene.draw_queues import draw_runs
-from rendergraph.scene.gpu_layout import (
-    TexturePlacement,
-    pack_instances,
-    pack_lights,
-    pack_materials,
-    place_textures,
-)
+from rendergraph.scene.gpu_layout import pack_instances, pack_lights
 from rendergraph.scene.scene import Camera, Scene
 
 #: Vertex inputs: name, components, offset in the attribute stream (positions have a stream of their own, which is all
@@ -53,44 +44,83 @@ class Batch:
     triangles: int
 
 
+@dataclass(frozen=True, slots=True)
+class _DrawOrder:
+    """Draw commands sorted for every eye, one block after another; the batches they are drawn in, by queue and replays;
+    and each frame's block.
+    """
+
+    packed: bytes
+    batches: dict[tuple[str, int], tuple[Batch, ...]]
+    block_bytes: int
+    block_of: tuple[int, ...]
+
+
 class SceneGeometry:
     """The uploaded scene. ``blocks`` are the storage blocks a shader may name; ``textures`` are ``u_textures``."""
 
-    def __init__(self, device: Device, scene: Scene, cameras: list[Camera], replays: frozenset[int]) -> None:
-        """``replays``: the instance counts that scene draws of the plan use (1, or the number of cascades)."""
+    def __init__(
+        self,
+        device: Device,
+        scene: Scene,
+        cameras: list[Camera],
+        replays: frozenset[int],
+        store: SceneStore | None = None,
+    ) -> None:
+        """``replays``: the instance counts that scene draws of the plan use (1, or the number of cascades). ``store``
+        holds the scene's vertices and textures already; it may be shared.
+        """
         self._device = device
         self._gl = device.gl
-        attributes = np.concatenate([scene.normals, scene.tangents, scene.uv0, scene.uv1, scene.colors], axis=1)
-        # Drawing an empty scene is legal and draws nothing, but GL wants every buffer to have at least one byte.
-        pad = np.zeros(16, dtype=np.uint32)
-        self._positions = create_buffer(device, _bytes(scene.positions, pad), "scene positions")
-        self._attributes = create_buffer(device, _bytes(attributes.astype(np.float32), pad), "scene attributes")
-        self._indices = create_buffer(device, _bytes(scene.indices, pad), "scene indices")
-        placement = place_textures(scene)
-        self.textures = _upload_textures(device, placement)
+        self._store = store or SceneStore(device, scene)
+        self.lights_move = _move(scene, cameras)
+        self._lights_packed = self._all_lights(scene, len(cameras), self.lights_move)
+        self.textures, materials = self._store.materials(scene)
         self.blocks: dict[str, Buffer] = {
-            "Instances": create_buffer(device, pack_instances(scene) or pad.tobytes() * 2, "Instances"),
-            "Materials": create_buffer(device, pack_materials(scene, placement) or pad.tobytes() * 4, "Materials"),
-            "Lights": self._pack_lights(scene, len(cameras)),
+            "Instances": create_buffer(device, pack_instances(scene) or PAD.tobytes() * 2, "Instances"),
+            "Materials": materials,
+            "Lights": create_buffer(device, self._lights_packed, "Lights"),
         }
         self._vertex_arrays: dict[tuple[tuple[str, int], ...], int] = {}
-        self._build_commands(scene, cameras, replays)
+        self._replays = replays
+        self._order = self._sorted_commands(scene, cameras)
+        self._commands_packed = self._order.packed
+        self._commands = create_buffer(device, self._commands_packed, "scene draw commands")
         self._frame_offset = 0
+
+    def change(self, scene: Scene, cameras: list[Camera]) -> bool:
+        """Upload what differs of another state of the scene, seen by other cameras: lights and the order of draws.
+        False, and nothing is done, where the instances, the number of lights, or whether any moves, are others.
+        """
+        order = self._sorted_commands(scene, cameras)
+        lights_move = _move(scene, cameras)
+        lights = self._all_lights(scene, len(cameras), lights_move)
+        if (order.batches, lights_move) != (self._order.batches, self.lights_move):
+            return False
+        if len(order.packed) > len(self._commands_packed) or len(lights) != len(self._lights_packed):
+            return False
+        self._order = order
+        if lights != self._lights_packed:
+            upload_buffer(self._device, self.blocks["Lights"], lights)
+            self._lights_packed = lights
+        if order.packed != self._commands_packed[: len(order.packed)]:
+            upload_buffer(self._device, self._commands, order.packed)
+            self._commands_packed = order.packed + self._commands_packed[len(order.packed) :]
+        return True
 
     # ---- lights
 
-    def _pack_lights(self, scene: Scene, frames: int) -> Buffer:
+    def _all_lights(self, scene: Scene, frames: int, move: bool) -> bytes:
         """The lights of every frame one after another, or once for all where none moves."""
-        self.lights_move = frames > 1 and any(light.circle for light in scene.lights)
         first = pack_lights(scene)
         # Storage ranges may start only at multiples of 256 (the GL maximum).
         self._light_stride = -(-len(first) // 256) * 256
-        kept = min(frames, max(1, LIGHT_BUDGET // self._light_stride)) if self.lights_move else 1
+        kept = min(frames, max(1, LIGHT_BUDGET // self._light_stride)) if move else 1
         self._light_block = [frame * kept // frames for frame in range(frames)] or [0]
         blocks = [pack_lights(scene, block / kept).ljust(self._light_stride, b"\0") for block in range(kept)]
         self._light_bytes = len(first)
         self._light_offset = 0
-        return create_buffer(self._device, b"".join(blocks) if self.lights_move else first, "Lights")
+        return b"".join(blocks) if move else first
 
     def bind_lights(self, binding: int) -> None:
         """Let a storage binding point see this frame's lights."""
@@ -100,17 +130,22 @@ class SceneGeometry:
 
     # ---- draw commands
 
-    def _build_commands(self, scene: Scene, cameras: list[Camera], replays: frozenset[int]) -> None:
+    @property
+    def batches(self) -> dict[tuple[str, int], tuple[Batch, ...]]:
+        """By queue and replays."""
+        return self._order.batches
+
+    def _sorted_commands(self, scene: Scene, cameras: list[Camera]) -> _DrawOrder:
         eyes = [camera.position for camera in cameras]
         distinct = list(dict.fromkeys(eyes))
-        per_frame = max(1, len(scene.instances) * COMMAND_BYTES * len(replays))
+        per_frame = max(1, len(scene.instances) * COMMAND_BYTES * len(self._replays))
         kept = distinct[:: max(1, -(-len(distinct) * per_frame // COMMAND_BUDGET))]
-        self.batches: dict[tuple[str, int], tuple[Batch, ...]] = {}
+        found: dict[tuple[str, int], tuple[Batch, ...]] = {}
         blocks = []
         for eye in kept:
             queues = draw_runs(scene, eye)
             parts, first = [], 0
-            for replay in sorted(replays):
+            for replay in sorted(self._replays):
                 for queue, runs in queues.items():
                     batches = []
                     for run in runs:
@@ -121,20 +156,22 @@ class SceneGeometry:
                         batches.append(Batch(first, len(commands), run.double_sided, run.mirrored, triangles))
                         parts.append(commands)
                         first += len(commands)
-                    self.batches[queue, replay] = tuple(batches)
+                    found[queue, replay] = tuple(batches)
             blocks.append(np.concatenate(parts).tobytes() if parts else b"")
-        self._frame_bytes = len(blocks[0]) if blocks else 0
-        self._commands = create_buffer(self._device, b"".join(blocks) or bytes(COMMAND_BYTES), "scene draw commands")
         where = {eye: index for index, eye in enumerate(kept)}
-        nearest, self._frame_block = 0, []
+        nearest, block_of = 0, []
         for eye in eyes:
             nearest = where.get(eye, nearest)
-            self._frame_block.append(nearest)
+            block_of.append(nearest)
+        return _DrawOrder(
+            b"".join(blocks) or bytes(COMMAND_BYTES), found, len(blocks[0]) if blocks else 0, tuple(block_of)
+        )
 
     def begin_frame(self, index: int) -> None:
         """Use the commands sorted for this frame's camera."""
-        block = self._frame_block[min(index, len(self._frame_block) - 1)] if self._frame_block else 0
-        self._frame_offset = block * self._frame_bytes
+        block_of = self._order.block_of
+        block = block_of[min(index, len(block_of) - 1)] if block_of else 0
+        self._frame_offset = block * self._order.block_bytes
         self._light_offset = self._light_block[min(index, len(self._light_block) - 1)] * self._light_stride
 
     def bind_commands(self) -> None:
@@ -156,9 +193,9 @@ class SceneGeometry:
             return self._vertex_arrays[inputs]
         gl = self._gl
         array = self._device.create_object("glCreateVertexArrays", label="scene vertices")
-        gl.glVertexArrayElementBuffer(array, self._indices.glo)
-        gl.glVertexArrayVertexBuffer(array, 0, self._positions.glo, 0, 12)
-        gl.glVertexArrayVertexBuffer(array, 1, self._attributes.glo, 0, ATTRIBUTE_STRIDE)
+        gl.glVertexArrayElementBuffer(array, self._store.indices.glo)
+        gl.glVertexArrayVertexBuffer(array, 0, self._store.positions.glo, 0, 12)
+        gl.glVertexArrayVertexBuffer(array, 1, self._store.attributes.glo, 0, ATTRIBUTE_STRIDE)
         layout = {"in_position": (3, 0, 0)} | {name: (size, offset, 1) for name, size, offset in ATTRIBUTES}
         for name, location in inputs:
             if name not in layout:
@@ -171,23 +208,6 @@ class SceneGeometry:
         return array
 
 
-def _bytes(array: npt.NDArray[Any], pad: npt.NDArray[Any]) -> bytes:
-    return np.ascontiguousarray(array).tobytes() or pad.tobytes()
-
-
-def _upload_textures(device: Device, placement: TexturePlacement) -> list[Texture]:
-    textures = []
-    for index, array in enumerate(placement.arrays):
-        desc = TextureDesc(
-            "srgb8_a8" if array.srgb else "rgba8",
-            array.size,
-            array.size,
-            layers=len(array.images),
-            mips=array.size.bit_length(),
-            target=Target.D2_ARRAY,
-        )
-        texture = create_texture(device, desc, f"u_textures[{index}]")
-        for mip, level in enumerate(array.levels()):
-            upload_texture(device, texture, level, mip=mip)
-        textures.append(texture)
-    return textures
+def _move(scene: Scene, cameras: list[Camera]) -> bool:
+    """Whether lights move over frames of these cameras."""
+    return len(cameras) > 1 and any(light.circle for light in scene.lights)
