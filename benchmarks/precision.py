@@ -134,7 +134,7 @@ def without_floating_origin() -> Iterator[None]:
 
 def metres(value: float) -> str:
     """A distance with its unit."""
-    return f"{value:.3g} m" if value < 1000.0 else f"{value / 1000.0:.3g} km"
+    return f"{value:.3g} m" if value < 1000.0 else f"{round(value / 1000.0, 1):g} km"
 
 
 def shown(value: float) -> str:

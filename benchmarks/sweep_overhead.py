@@ -22,7 +22,10 @@ from rendergraph.report.sweep import sweep_record
 from rendergraph.report.sweep_files import write_sweep
 from rendergraph.run.runner import Runner
 
-OVER = {"deferred_shading": "shadows.cascades=1:3:3,antialias.search_steps=4|12", "fxaa": "antialias.search_steps=1:16:4"}
+OVER = {
+    "deferred_shading": "shadows.cascades=1:3:3,antialias.search_steps=4|12",
+    "fxaa": "antialias.search_steps=1:16:4",
+}
 
 
 def main(graph: str) -> None:

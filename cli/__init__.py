@@ -17,6 +17,7 @@ from rendergraph.cli import (
     attribute,
     bench,
     catalogue,
+    conform,
     diff,
     environment,
     fuzz,
@@ -61,7 +62,7 @@ def _root(
 
 for group in (
     render, bench, diff, validate, plan, inspect, catalogue,
-    environment, scaffold, fuzz, stress, sweep, attribute,
+    environment, scaffold, fuzz, stress, sweep, attribute, conform,
 ):  # fmt: skip
     group.register(app)
 

@@ -54,7 +54,7 @@ def attribute(
     opened = open_device(device)
     with progress_bar() as progress:
         found, document, planned = attribute_error(graph, opened, options, progress)
-    record = attribution_record(found, planned, opened, document.model.title)
+    record = attribution_record(found, planned, opened, graph, title=document.model.title, overrides=options.overrides)
     if output is not None:
         write_record(output / "attribution.json", record)
     if format is Format.JSON:

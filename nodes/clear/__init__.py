@@ -26,7 +26,7 @@ class ClearParams(Params):
         0,
         "Four numbers, or one for all channels. For depth: a distance, 0 near to 1 far. For a buffer: a 32-bit word.",
     )
-    stencil: int = knob(0, "Value of the stencil, where the format has one.", ge=0, le=255)
+    stencil: int = knob(0, "Value of the stencil, where the format has one.", ge=0, le=255, accurate="neither")
 
 
 class Clear(Node[ClearParams]):

@@ -25,6 +25,7 @@ class ShadowParams(Params):
         unit="texel",
         ge=1,
         le=9,
+        accurate="neither",
     )
 
 

@@ -46,10 +46,15 @@ class DrawParams(UserRasterParams):
     queues: tuple[Literal["opaque", "masked", "blended"], ...] = knob(
         (), "Draw the scene's geometry: these queues, in order."
     )
-    vertices: int = knob(0, "Draw this many vertices without attributes; the shader makes them from gl_VertexID.", ge=0)
+    vertices: int = knob(
+        0,
+        "Draw this many vertices without attributes; the shader makes them from gl_VertexID.",
+        ge=0,
+        accurate="neither",
+    )
     indirect: str | None = knob(None, "A buffer read that holds draw arguments, four 32-bit words a draw.")
-    draws: int = knob(1, "Draws in the `indirect` buffer.", ge=1, le=65536)
-    instances: int = knob(1, "Instances of each draw.", ge=1, le=1 << 24)
+    draws: int = knob(1, "Draws in the `indirect` buffer.", ge=1, le=65536, accurate="neither")
+    instances: int = knob(1, "Instances of each draw.", ge=1, le=1 << 24, accurate="neither")
     separate: bool = knob(
         False,
         "With `vertices`: a draw call an instance, in place of one instanced call; the shader tells instances apart by "

@@ -49,17 +49,38 @@ class ExposureParams(Params):
         "histogram (trimmed mean of log luminance), average (its plain mean) or manual (compensation alone).",
     )
     compensation: float = knob(
-        0.0, "Added to what the meter chose; the whole exposure in manual mode.", unit="stops", ge=-32, le=32
+        0.0,
+        "Added to what the meter chose; the whole exposure in manual mode.",
+        unit="stops",
+        ge=-32,
+        le=32,
+        accurate="neither",
     )
-    low: float = knob(0.5, "Fraction of the texels, darkest first, that the histogram leaves out.", ge=0.0, le=0.99)
-    high: float = knob(0.95, "Fraction of the texels up to which the histogram counts.", ge=0.01, le=1.0)
-    min_ev: float = knob(-10.0, "Log2 luminance that darker texels are metered as.", unit="stops", ge=-24, le=24)
-    max_ev: float = knob(14.0, "Log2 luminance that brighter texels are metered as.", unit="stops", ge=-24, le=24)
+    low: float = knob(
+        0.5,
+        "Fraction of the texels, darkest first, that the histogram leaves out.",
+        ge=0.0,
+        le=0.99,
+        accurate="neither",
+    )
+    high: float = knob(
+        0.95, "Fraction of the texels up to which the histogram counts.", ge=0.01, le=1.0, accurate="neither"
+    )
+    min_ev: float = knob(
+        -10.0, "Log2 luminance that darker texels are metered as.", unit="stops", ge=-24, le=24, accurate="neither"
+    )
+    max_ev: float = knob(
+        14.0, "Log2 luminance that brighter texels are metered as.", unit="stops", ge=-24, le=24, accurate="neither"
+    )
     stride: int = knob(
         1, "Every how many texels one is read, along both axes.", unit="px", ge=1, le=16, accurate="down"
     )
-    brighten: float = knob(0.1, "Share of the way to a higher exposure that one frame goes.", ge=0.0, le=1.0)
-    darken: float = knob(0.3, "Share of the way to a lower exposure that one frame goes.", ge=0.0, le=1.0)
+    brighten: float = knob(
+        0.1, "Share of the way to a higher exposure that one frame goes.", ge=0.0, le=1.0, accurate="neither"
+    )
+    darken: float = knob(
+        0.3, "Share of the way to a lower exposure that one frame goes.", ge=0.0, le=1.0, accurate="neither"
+    )
 
     @model_validator(mode="after")
     def _ranges(self) -> ExposureParams:

@@ -20,6 +20,8 @@ DEPTH_FORMATS = ("d32f", *sorted(DEPTH - {"d32f"}))
 BLACK = (0.0, 0.0, 0.0, 1.0)
 
 EXTREMES = (
+    Extreme("frame_1x8191", "Triangles thousands of frames wide.",
+            skips={"error": "normals and depth are interpolated over them, whose slopes float32 holds to six digits"}),
     Extreme("without_prepass", "Hidden fragments are shaded, too.", ("passes.solid.set.prepass=off",)),
     Extreme("vast_lights", "Lights that reach everywhere.",
             ("scene.lights.points.count=500", "scene.lights.points.radius=1e6")),

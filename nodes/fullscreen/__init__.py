@@ -12,6 +12,11 @@ from rendergraph.node.user_shader import UserRasterParams, require_suffix
 from rendergraph.plan.graph import State
 
 EXTREMES = (
+    Extreme(
+        "frame_8191x1",
+        "Waves over thousands of frames' heights.",
+        skips={"error": "the plasma's waves are taken at distances up to 12000, where float32 keeps three digits"},
+    ),
     Extreme("flat", "A wave without a length.", ("passes.plasma.set.uniforms.u_scale=0.0",)),
     Extreme("standing", "Nothing moves.", ("passes.plasma.set.uniforms.u_speed=0.0",)),
     Extreme("whole_uniforms", "Whole numbers for floats.", ("passes.plasma.set.uniforms.u_scale=3",)),

@@ -38,7 +38,7 @@ class FxaaParams(Params):
     search_steps: int = knob(
         12, "Steps sought along an edge each way; longer edges are blended better.", ge=1, le=32, accurate="up"
     )
-    subpixel: float = knob(0.75, "How much details below a pixel are softened.", ge=0.0, le=1.0)
+    subpixel: float = knob(0.75, "How much details below a pixel are softened.", ge=0.0, le=1.0, accurate="neither")
 
 
 class Fxaa(Node[FxaaParams]):

@@ -41,15 +41,26 @@ class ShadowMapParams(Params):
         MAX_CASCADES, "Cascades drawn; at most the layers of the map.", ge=1, le=MAX_CASCADES, accurate="up"
     )
     distance: float = knob(
-        60.0, "View depth at which shadows end; ends with the scene if that is nearer.", unit="m", gt=0
+        60.0,
+        "View depth at which shadows end; ends with the scene if that is nearer.",
+        unit="m",
+        gt=0,
+        accurate="neither",
     )
-    split: float = knob(0.7, "Split of the range: 0 into equal lengths, 1 into equal ratios of depth.", ge=0.0, le=1.0)
+    split: float = knob(
+        0.7,
+        "Split of the range: 0 into equal lengths, 1 into equal ratios of depth.",
+        ge=0.0,
+        le=1.0,
+        accurate="neither",
+    )
     slope_bias: float = knob(
         1.5,
         "Depth added to casters, per texel of depth slope: hides acne, detaches shadows.",
         unit="texel",
         ge=0,
         le=16,
+        accurate="neither",
     )
     normal_bias: float = knob(
         1.0,
@@ -57,6 +68,7 @@ class ShadowMapParams(Params):
         unit="filter radius",
         ge=0,
         le=8,
+        accurate="neither",
     )
 
 

@@ -44,7 +44,9 @@ class SkyParams(Params):
         "analytic (Preetham 1999; a gradient where the scene has no sun) or gradient (the scene's ambient light).",
         accurate=("gradient", "analytic"),
     )
-    turbidity: float = knob(3.0, "Haze of the analytic model: 2 very clear, 10 hazy.", ge=2.0, le=10.0)
+    turbidity: float = knob(
+        3.0, "Haze of the analytic model: 2 very clear, 10 hazy.", ge=2.0, le=10.0, accurate="neither"
+    )
     sun_illuminance: float = knob(
         100.0,
         "Illuminance that the scene's sun stands for: sets the sky's brightness against the sun's.",
@@ -52,8 +54,12 @@ class SkyParams(Params):
         gt=0,
         le=1000,
     )
-    sun_radius: float = knob(0.2665, "Angular radius of the sun's disc; 0 for none.", unit="deg", ge=0.0, le=10.0)
-    horizon: float = knob(0.02, "Sine of the elevation over which sky and ground blend.", gt=0.0, le=1.0)
+    sun_radius: float = knob(
+        0.2665, "Angular radius of the sun's disc; 0 for none.", unit="deg", ge=0.0, le=10.0, accurate="neither"
+    )
+    horizon: float = knob(
+        0.02, "Sine of the elevation over which sky and ground blend.", gt=0.0, le=1.0, accurate="neither"
+    )
 
 
 class Sky(Node[SkyParams]):

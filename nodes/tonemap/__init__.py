@@ -40,9 +40,16 @@ class TonemapParams(Params):
 
     curve: Curve = knob("agx", "Tone curve: agx (Sobotka), aces (Hill's fit), reinhard (extended) or linear (clamp).")
     ev: float = knob(
-        0.0, "Exposure, multiplied onto the exposure input's where one is connected.", unit="stops", ge=-32, le=32
+        0.0,
+        "Exposure, multiplied onto the exposure input's where one is connected.",
+        unit="stops",
+        ge=-32,
+        le=32,
+        accurate="neither",
     )
-    white: float = knob(4.0, "Luminance that `reinhard` maps to white; the other curves ignore it.", gt=0, le=65504)
+    white: float = knob(
+        4.0, "Luminance that `reinhard` maps to white; the other curves ignore it.", gt=0, le=65504, accurate="neither"
+    )
     dither: Dither = knob("triangular", "Noise below one step of the output, against banding.")
 
 

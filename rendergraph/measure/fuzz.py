@@ -87,7 +87,7 @@ def fuzz_document(
         orders = set()
         for done, case in enumerate(cases):
             progress("running variations", done, len(cases))
-            if _difference(bed, case, expected) is not None:
+            if first_difference(bed, case, expected) is not None:
                 failing.append(case)
             else:
                 orders.add(tuple(step.name for step in bed.plan(case).order))
@@ -128,7 +128,7 @@ def _cases(bed: TestBed, options: FuzzOptions) -> Iterator[FuzzCase]:
     yield from sorted(found, key=lambda case: len(case.varied))
 
 
-def _difference(bed: TestBed, case: FuzzCase, expected: Images) -> tuple[str, int, str] | None:
+def first_difference(bed: TestBed, case: FuzzCase, expected: Images) -> tuple[str, int, str] | None:
     """The first frame's output that differs, and what the run ended with; ``None`` when all are the same."""
     try:
         images = bed.images(case)
@@ -143,8 +143,8 @@ def _difference(bed: TestBed, case: FuzzCase, expected: Images) -> tuple[str, in
 
 
 def _explain(bed: TestBed, case: FuzzCase, expected: Images) -> Failure:
-    smallest = minimise(bed, case, lambda tried: _difference(bed, tried, expected) is not None)
-    found = _difference(bed, smallest.case, expected)
+    smallest = minimise(bed, case, lambda tried: first_difference(bed, tried, expected) is not None)
+    found = first_difference(bed, smallest.case, expected)
     if found is None:  # it failed before: runs of one plan differ among themselves
         return Failure(smallest.case, ())
     output, frame, error = found

@@ -94,12 +94,13 @@ def fuzz_findings(report: FuzzReport, document: Document) -> list[Diagnostic]:
             failed=report.failed,
             runs=report.runs,
             guilty=guilty + swaps,
-            blame=_blame(culprit) if culprit else _REASONS["not_found"],
+            blame=blame(culprit) if culprit else _REASONS["not_found"],
         )
     ]
 
 
-def _blame(culprit: Culprit) -> str:
+def blame(culprit: Culprit) -> str:
+    """Who made the difference, where, and by what values."""
     where = f"word {culprit.x}" if culprit.buffer else f"texel ({culprit.x}, {culprit.y})"
     where += "".join(f" of {name} {at}" for name, at in (("layer", culprit.layer), ("mip", culprit.mip)) if at)
     values = f"{_texel(culprit.found)} instead of {_texel(culprit.expected)} in frame {culprit.frame}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from rich.console import Group, RenderableType
@@ -20,7 +21,15 @@ from rendergraph.run.plan_document import PlannedDocument
 SCHEMA = "rendergraph.attribution/1"
 
 
-def attribution_record(found: Attribution, planned: PlannedDocument, device: Device, title: str = "") -> dict[str, Any]:
+def attribution_record(
+    found: Attribution,
+    planned: PlannedDocument,
+    device: Device,
+    graph: str,
+    *,
+    title: str = "",
+    overrides: Sequence[str] = (),
+) -> dict[str, Any]:
     """The record as JSON-ready data; times in milliseconds."""
     frame, info = planned.plan.graph.frame, device.info
     return {
@@ -28,6 +37,8 @@ def attribution_record(found: Attribution, planned: PlannedDocument, device: Dev
         "rendergraph": rendergraph.__version__,
         "title": title,
         "size": [frame.width, frame.height],
+        "graph": graph,
+        "set": list(overrides),
         "device": {"renderer": info.renderer, "version": info.driver, "driver": driver_version(info.driver)},
         "output": found.output,
         "quantity": found.quantity.value,
@@ -36,7 +47,7 @@ def attribution_record(found: Attribution, planned: PlannedDocument, device: Dev
         "error": number(found.error),
         "frame_ms": round(found.frame_ms, 6),
         "passes": [_contribution(entry) for entry in found.passes],
-        "accurate": dict(found.accurate),
+        "others": [{"name": name, "reason": reason} for name, reason in found.accurate.items()],
     }
 
 
@@ -86,5 +97,5 @@ def attribution_table(record: dict[str, Any]) -> RenderableType:
             f"its truth ({what})" if entry["how"] == "truth" else what,
         )
     lines = [f"error as it is: {shown(record['error'])} · frame {record['frame']}, {record['frame_ms']:.3f} ms"]
-    lines += [f"{name}: {why}" for name, why in record["accurate"].items()]
+    lines += [f"{other['name']}: {other['reason']}" for other in record["others"]]
     return Group(table, Text("\n".join(lines), style="dim"))

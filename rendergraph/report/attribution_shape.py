@@ -26,10 +26,19 @@ class ContributionRecord(Part):
     error_per_ms: Amount
 
 
+class OtherPassRecord(Part):
+    """A pass that nothing is attributed to."""
+
+    name: str
+    reason: str
+
+
 class AttributionRecord(Head):
     """Which pass the final image's error comes from, beside what each costs."""
 
     version: Literal["rendergraph.attribution/1"] = Field(alias="schema")
+    graph: str
+    set: list[str] = Field(description="The settings it ran under, as --set takes them.")
     device: JudgedDeviceRecord
     output: str
     quantity: Literal["display", "radiance", "normal", "depth", "share", "identity", "scalar"]
@@ -38,4 +47,4 @@ class AttributionRecord(Head):
     error: Amount = Field(description="Of the image as it is, against the one with all these passes replaced.")
     frame_ms: Milliseconds
     passes: list[ContributionRecord] = Field(description="First where a millisecond buys most.")
-    accurate: dict[str, str] = Field(description="The other passes, and why nothing is attributed to them.")
+    others: list[OtherPassRecord] = Field(description="To which nothing is attributed.")

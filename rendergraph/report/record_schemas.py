@@ -34,7 +34,7 @@ RECORDS: Final[dict[str, type[Head]]] = {
 
 
 def record_schema(name: str) -> dict[str, Any]:
-    """The JSON Schema of ``timing.json``, ``resources.json``, ``accuracy.json`` or ``rg stress``, by its name in RECORDS."""
+    """The JSON Schema of a record, by its name in ``RECORDS``."""
     model = RECORDS[name]
     schema = model.model_json_schema(schema_generator=_Untitled)
     version = schema["properties"]["schema"]["const"]

@@ -34,6 +34,13 @@ class StressFailureRecord(Part):
     texel: BadTexelRecord | None
 
 
+class SkippedCheckRecord(Part):
+    """A check that was left out."""
+
+    check: Check
+    reason: str
+
+
 class StressedPassRecord(Part):
     """A pass at an extreme."""
 
@@ -43,7 +50,7 @@ class StressedPassRecord(Part):
         description="inherited: it fails on inputs that were not finite before it ran."
     )
     failures: list[StressFailureRecord]
-    skipped: dict[Check, str] = Field(description="Checks left out, with the reason.")
+    skipped: list[SkippedCheckRecord]
     reason: str = Field(description="Why it was not checked; empty where it was.")
 
 
@@ -69,6 +76,15 @@ class StressDeviceRecord(Part):
     driver: str
 
 
+class StressCountsRecord(Part):
+    """How many extremes there are, and of them those that failed, were refused as declared, or do not apply."""
+
+    extremes: Count
+    failed: Count
+    refused: Count
+    not_applicable: Count
+
+
 class StressRecord(Head):
     """What a graph, or a node on its own graph, does at the numerical extremes."""
 
@@ -76,6 +92,5 @@ class StressRecord(Head):
     graph: str = Field(description="The graph file's name.")
     node: str = Field(description="The node that alone was looked at; empty for all passes.")
     device: StressDeviceRecord
-    checks: dict[Check, str] = Field(description="What is checked, and what it means.")
-    counts: dict[Literal["extremes", "failed", "refused", "not_applicable"], Count]
+    counts: StressCountsRecord
     extremes: list[ExtremeRecord]

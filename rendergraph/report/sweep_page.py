@@ -54,8 +54,18 @@ def _small(axis: dict[str, Any]) -> dict[str, Any]:
     known = [float(error) for error in axis["errors"] if isinstance(error, int | float)]
     up = scale([0.0, *known], height - 30.0, 12.0)
     gap = (width - 76.0) / max(1, len(axis["values"]) - 1)
+    last = len(axis["values"]) - 1
+    # Where names would run into each other, only the ends are named.
+    named = max(len(value) for value in axis["values"]) * 7.0 < gap
     marks = [
-        {"x": round(56.0 + gap * at, 2), "y": up.at(float(error)), "value": value, "error": shown(error)}
+        {
+            "x": round(56.0 + gap * at, 2),
+            "y": up.at(float(error)),
+            "value": value,
+            "error": shown(error),
+            "named": named or at in (0, last),
+            "anchor": "start" if at == 0 else "end" if at == last else "middle",
+        }
         for at, (value, error) in enumerate(zip(axis["values"], axis["errors"], strict=True))
         if isinstance(error, int | float)
     ]

@@ -147,4 +147,4 @@ def _at(scale: Scale, value: float) -> float:
 def _step(rough: float) -> float:
     """A round number near ``rough``."""
     power = 10.0 ** floor(log10(rough))
-    return next(m * power for m in (1.0, 2.0, 5.0, 10.0) if m * power >= rough * 0.999)
+    return next(m * power for m in (1.0, 2.0, 2.5, 5.0, 10.0) if m * power >= rough * 0.999)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from rendergraph.report.accuracy_shape import Amount
-from rendergraph.report.record_shape import Bytes, Count, Head, Milliseconds, Part
+from rendergraph.report.record_shape import Bytes, Count, Head, Milliseconds, Part, Share
 
 Rounds = list[list[Milliseconds]]
 Error = Amount | None
@@ -61,7 +61,7 @@ class SweepPointRecord(Part):
     bytes: Bytes = Field(description="Transient memory used.")
     error: Error
     standard_error: Amount = Field(description="Of the error over frames, where the graph is random; else 0.")
-    tolerance: float | None = Field(description="That the node states for this setting.")
+    tolerance: Annotated[float, Field(ge=0)] | None = Field(description="That the node states for this setting.")
     verdict: Literal["within", "above", "measured", "cannot_judge", "no_truth", "refused"]
     reason: str
     steady: bool
@@ -101,7 +101,7 @@ class SweepDesignRecord(Part):
     frames: Count = Field(description="Timed frames a round.")
     rounds: Count
     seed: Count
-    confidence: float
+    confidence: Share
     sampled: bool = Field(description="Whether the settings are a Latin hypercube, not all combinations.")
 
 
@@ -109,7 +109,7 @@ class SweepLimitsRecord(Part):
     """What was asked of the setting to take."""
 
     budget_ms: Milliseconds | None
-    max_error: float | None
+    max_error: Annotated[float, Field(ge=0)] | None
 
 
 class SweepRecord(Head):

@@ -88,7 +88,9 @@ def graph(install: Install, tmp_path: Path) -> Path:
     (tmp_path / "show.frag").write_text(show)
     for name in ("start", "show"):  # exact, as far as they go: nothing of the error is theirs
         text = (tmp_path / f"{name}.frag").read_text()
-        (tmp_path / f"{name}.frag").write_text(text.replace("out float v;", "out float color;").replace("v =", "color ="))
+        (tmp_path / f"{name}.frag").write_text(
+            text.replace("out float v;", "out float color;").replace("v =", "color =")
+        )
     path = tmp_path / "graph.yaml"
     path.write_text(GRAPH.replace("{color: image}", "{value: image}"))
     return path
@@ -109,7 +111,7 @@ def test_each_pass_is_given_its_own_error(graph: Path, device: Device) -> None:
     assert sum(entry.share for entry in found.passes) == pytest.approx(1.0)
     assert found.passes[0].error_per_ms >= found.passes[1].error_per_ms
     assert all(entry.ms > 0.0 and entry.bytes == 16 * 16 * 4 for entry in found.passes)
-    record = attribution_record(found, planned, device, document.model.title)
+    record = attribution_record(found, planned, device, "graph.yaml", title=document.model.title)
     AttributionRecord.model_validate(json.loads(json.dumps(record)))
     attribution_table(record)
 

@@ -20,6 +20,9 @@ from rendergraph.report.record_schemas import RECORDS, record_schema, schema_tex
 from rendergraph.report.resources import resources_record
 from rendergraph.report.timing import timing_record
 from tests.report.made_up_accuracy import made_up_accuracy
+from tests.report.made_up_attribution import made_up_attribution
+from tests.report.made_up_stress import made_up_stress
+from tests.report.made_up_sweep import made_up_sweep
 from tests.report.test_timing import result
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -39,6 +42,9 @@ def records() -> Iterator[tuple[str, dict[str, Any]]]:
     yield "resources", planned("deferred_shading", alias=False)
     yield "resources", planned("deferred_shading", order="random", seed=3, cull=False)
     yield "accuracy", made_up_accuracy()
+    yield "stress", made_up_stress()
+    yield "sweep", made_up_sweep()
+    yield "attribution", made_up_attribution()
     for samples in (0, 1, 3):
         yield "timing", json.loads(json.dumps(timing_record(result(samples), "title")))
 
@@ -126,7 +132,7 @@ def at(record: Any, path: tuple[Any, ...]) -> Any:
 OPEN = {"evidence", "proof"}
 OPTIONAL = {"slot", "offset", "view_class"}
 FREE = {"metrics", "inputs"}  # mappings with any keys
-SIGNED = {"value", "metrics", "judged", "true", "inputs"}
+SIGNED = {"value", "metrics", "judged", "true", "inputs", "removed"}
 
 
 @pytest.mark.parametrize("name", RECORDS)

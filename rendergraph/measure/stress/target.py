@@ -53,7 +53,7 @@ def _graph_of(node: str) -> Path:
 
 
 def _own_graph(node: str) -> Path | None:
-    """The graph shipped under the node's name, else ``example.yaml`` or ``NODE.yaml`` in the node's package."""
+    """The graph shipped under the node's name, else ``example.yaml``, ``NODE.yaml`` or ``graphs/NODE.yaml`` by the node."""
     shipped = graph_folder() / f"{node}.yaml"
     if shipped.is_file():
         return shipped.resolve()
@@ -61,7 +61,8 @@ def _own_graph(node: str) -> Path | None:
         folder = find_node(node).folder
     except Exception:  # other people's packages may fail in any way when imported
         return None
-    for file in (folder / "example.yaml", folder / f"{node}.yaml", folder.parent / "example.yaml"):
+    beside = (folder / "example.yaml", folder / f"{node}.yaml", folder / "graphs" / f"{node}.yaml")
+    for file in (*beside, folder.parent / "graphs" / f"{node}.yaml", folder.parent / "example.yaml"):
         if file.is_file():
             return file.resolve()
     return None

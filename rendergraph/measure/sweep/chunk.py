@@ -11,7 +11,7 @@ from random import Random
 from rendergraph.document.messages import RenderGraphError
 from rendergraph.measure.steady import steady_from
 from rendergraph.measure.sweep.bench import Overrides, Workbench
-from rendergraph.measure.sweep.errors import PointError, measure_error
+from rendergraph.measure.sweep.errors import PointError, judged_frames, measure_error
 from rendergraph.measure.sweep.store import CONTROL, ChunkResult, PointResult
 from rendergraph.run.plan_document import PlannedDocument
 from rendergraph.run.render import frame_cameras
@@ -101,7 +101,10 @@ def measure_chunk(
 
 def _prepare(bench: Workbench, held: ExitStack, overrides: Overrides, planned: PlannedDocument) -> Prepared:
     scene = planned.scene.scene if planned.scene is not None else None
-    runner = Runner(bench.device, planned.plan, scene, frame_cameras(planned), store=bench.store(overrides))
+    cameras = frame_cameras(planned)
+    # The camera stands still in the frames behind the file's last, but what is random goes on.
+    cameras += [cameras[-1]] * (judged_frames(bench.settings.document(overrides)) - 1)
+    runner = Runner(bench.device, planned.plan, scene, cameras, store=bench.store(overrides))
     # Last in, first out: a runner deletes what was made since it was.
     held.callback(runner.release)
     runner.prepare()

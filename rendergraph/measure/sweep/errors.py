@@ -51,7 +51,7 @@ def measure_error(
     last = planned.plan.graph.frame.count - 1
     for index in range(last):
         runner.run_frame(index)
-    count = FRAMES if _random(document) else 1
+    count = judged_frames(document)
     found = [
         _of_frame(bench, runner, document, overrides, planned, index) for index in range(last, last + count)
     ]  # fmt: skip
@@ -127,9 +127,11 @@ def as_error(metric: str, value: float | None) -> float:
     return inf if isnan(error) else error
 
 
-def _random(document: Document) -> bool:
+def judged_frames(document: Document) -> int:
+    """From how many frames the error is taken: one, or :data:`FRAMES` where a node of the graph is random."""
     nodes = (find_node(model.node) for model in document.model.passes.values())
-    return any(node.reference is not None and node.reference.stochastic for node in nodes)
+    random = any(node.reference is not None and node.reference.stochastic for node in nodes)
+    return FRAMES if random else 1
 
 
 def _size(image: Any) -> str:

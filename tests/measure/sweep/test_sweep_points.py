@@ -43,7 +43,9 @@ def test_a_hypercube_that_is_too_large_is_refused_too() -> None:
 
 
 @settings(deadline=None, derandomize=True, max_examples=60)
-@given(sizes=st.lists(st.integers(2, 6), min_size=2, max_size=6), times=st.integers(1, 5), seed=st.integers(0, 2**32 - 1))
+@given(
+    sizes=st.lists(st.integers(2, 6), min_size=2, max_size=6), times=st.integers(1, 5), seed=st.integers(0, 2**32 - 1)
+)
 def test_a_hypercube_shows_each_value_equally_often(sizes: list[int], times: int, seed: int) -> None:
     axes = [axis(f"k{at}", size) for at, size in enumerate(sizes)]
     count = 60 * times  # divides by every size

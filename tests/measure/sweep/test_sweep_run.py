@@ -7,15 +7,19 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from rendergraph.document.messages import RenderGraphError
+from rendergraph.measure.sweep.errors import PointError, as_error, image_error, over_frames
 from rendergraph.measure.sweep.outcome import Limits, SweepOutcome, sweep_outcome
 from rendergraph.measure.sweep.run import Sweep, new_job
 from rendergraph.measure.sweep.store import CONTROL, FILE
+from rendergraph.node.reference import Quantity
 from rendergraph.report.sweep import sweep_record
 from rendergraph.report.sweep_shape import SweepRecord
 from tests.measure.sweep.conftest import ramp_error
+from tests.measure.truth.slope_node import DAPPLE, DAPPLE_REFERENCE, DAPPLE_SHADER
 
 pytestmark = pytest.mark.gpu
 
@@ -56,9 +60,7 @@ def test_the_error_is_the_nodes_own_and_falls(ramp_graph: Path, tmp_path: Path) 
 
 
 @pytest.mark.parametrize(("knob", "shape"), [("planted", "rises"), ("idle", "flat")])
-def test_a_knob_whose_error_does_not_fall_is_reported(
-    ramp_graph: Path, tmp_path: Path, knob: str, shape: str
-) -> None:
+def test_a_knob_whose_error_does_not_fall_is_reported(ramp_graph: Path, tmp_path: Path, knob: str, shape: str) -> None:
     _, outcome = swept(ramp_graph, tmp_path / "s", f"ramp.{knob}=0|4|9")
     assert outcome.trends[0].shape == shape
     assert codes(outcome) == ["RG757"]
@@ -229,3 +231,51 @@ def test_the_document_alone_is_a_sweep_too(ramp_graph: Path, tmp_path: Path) -> 
     assert [sweep.result_of(point) for point in sweep.points] == [CONTROL]
     assert sweep.complete
     assert errors(outcome) == pytest.approx([ramp_error(4)], rel=1e-5)
+
+
+# ---- randomness
+
+
+def test_a_random_nodes_error_comes_with_its_own_standard_error(install: Any, tmp_path: Path) -> None:
+    install("dapple", {"__init__.py": DAPPLE, "reference.py": DAPPLE_REFERENCE, "dapple.frag": DAPPLE_SHADER})
+    path = tmp_path / "graph.yaml"
+    path.write_text(
+        "rendergraph: 1\nframe: {size: [16, 16]}\npasses:\n  specks: {node: dapple, write: {light: image}}\n"
+        "outputs: {image: {file: image.npy, format: r32f}}\n"
+    )
+    _, outcome = swept(path, tmp_path / "s", "specks.bias=0|0.5")
+    for row, bias in zip(outcome.rows, (0.0, 0.5), strict=True):
+        assert row.result.error is not None
+        assert row.error is not None
+        # White noise of width 0.5: a frame is off by 0.5 / sqrt(12) beside its bias, in the mean of squares.
+        assert row.error == pytest.approx((0.5**2 / 12 + bias**2) ** 0.5, rel=0.03)
+        assert 0.0 < row.result.error.standard_error < 0.01
+
+
+def test_images_are_compared_by_the_metric_asked_for() -> None:
+    found = image_error(Quantity.SHARE, "rmse", np.zeros((2, 2, 1)), np.full((2, 2, 1), 0.5))
+    assert (found.value, found.verdict) == (0.5, "measured")
+
+
+@pytest.mark.parametrize(
+    ("metric", "value", "error"),
+    [
+        ("rmse", 0.25, 0.25),
+        ("ssim", 0.75, 0.25),
+        ("psnr", 20.0, 0.1),
+        ("psnr", None, 0.0),
+        ("rmse", float("nan"), float("inf")),
+        ("flip", None, float("inf")),
+    ],
+)
+def test_more_is_always_worse(metric: str, value: float | None, error: float) -> None:
+    assert as_error(metric, value) == pytest.approx(error)
+
+
+def test_over_frames_the_worst_verdict_and_the_mean() -> None:
+    within, above = PointError(1.0, "within"), PointError(3.0, "above")
+    found = over_frames([within, above, within, above])
+    assert (found.value, found.verdict) == (2.0, "above")
+    assert found.standard_error == pytest.approx((4 / 3) ** 0.5 / 2)  # deviations of 1: sample deviation sqrt(4/3)
+    assert over_frames([within, PointError(None, "cannot_judge", "all_masked")]).value is None
+    assert over_frames([within]) is within
