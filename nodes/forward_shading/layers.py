@@ -37,8 +37,8 @@ def blended_layers(seen: Surfaces) -> tuple[Layers, Bools]:
     scene, height, width = seen.rays.scene, *seen.hit.shape
     glass = Rays(scene, (Alpha.BLENDED,))
     draws = np.zeros(max(1, len(scene.instances)), dtype=np.int64)
-    order = [int(one) for run in draw_runs(scene, seen.camera.position)[QUEUES[Alpha.BLENDED]]
-             for one in run.commands["base_instance"]]  # fmt: skip
+    runs = draw_runs(scene, seen.camera.position, place_textures(scene))[QUEUES[Alpha.BLENDED]]
+    order = [int(one) for run in runs for one in run.commands["base_instance"]]
     draws[order] = np.arange(1, len(order) + 1)
     known = np.ones(height * width, dtype=bool)
     pixel, primitive, distance, weights, front = _through(glass, seen.origins, seen.directions, seen.hits.distance)

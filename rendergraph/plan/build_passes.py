@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from rendergraph.document.messages import RenderGraphError
-from rendergraph.document.suggest import did_you_mean
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node
 from rendergraph.node.discovery import find_node
@@ -20,6 +19,9 @@ from rendergraph.plan.check_whole import check_files
 from rendergraph.plan.findings import Findings
 from rendergraph.plan.graph import Decision, Frame, Kind, Pass, Resource
 from rendergraph.scene.features import SceneFeatures
+
+#: What a node is told of the scene in a graph that has none.
+NO_SCENE = SceneFeatures()
 
 
 @dataclass
@@ -101,7 +103,7 @@ class PassBuilder:
             document.position("passes", name, key=True),
             len(self.findings.errors),
         )
-        features, folder = self.features or SceneFeatures(), self.findings.folder
+        features, folder = self.features or NO_SCENE, self.findings.folder
         builder = Builder(
             name, node.folder, folder, self.frame, features, self.full, found.inputs, found.outputs, at,
             {port: self._held(resource) for port, resource in found.inputs.items()},
@@ -126,8 +128,12 @@ class PassBuilder:
 
     def _connect(self, name: str, section: str, ports: Mapping[str, str]) -> dict[str, Resource]:
         """Port to resource, of those that exist."""
-        found = ((port, self._find(name, section, port, resource)) for port, resource in ports.items())
-        return {port: resource for port, resource in found if resource is not None}
+        connected: dict[str, Resource] = {}
+        for port, resource in ports.items():
+            found = self._find(name, section, port, resource)
+            if found is not None:
+                connected[port] = found
+        return connected
 
     def _find(self, name: str, section: str, port: str, resource: str) -> Resource | None:
         """The resource connected to a port, or ``None`` after reporting why there is none."""
@@ -136,9 +142,9 @@ class PassBuilder:
         passes, loc = self.findings.document.model.passes, ("passes", name, section, port)
         owner, dot, _ = resource.partition(".")
         if not dot:
-            self.findings.add("RG212", *loc, resource=resource, hint=did_you_mean(resource, self.resources))
+            self.findings.add("RG212", *loc, resource=resource, hint=self.findings.suggest(resource, self.resources))
         elif owner not in passes:
-            self.findings.add("RG212", *loc, resource=resource, hint=did_you_mean(owner, passes))
+            self.findings.add("RG212", *loc, resource=resource, hint=self.findings.suggest(owner, passes))
         elif section == "write":
             hint = "declare a resource and write that one"
             self.findings.add("RG220", *loc, resource=resource, owner=owner, hint=hint)
@@ -146,7 +152,9 @@ class PassBuilder:
             targets = self.internal[owner]
             if resource in targets:
                 return targets[resource]
-            self.findings.add("RG220", *loc, resource=resource, owner=owner, hint=did_you_mean(resource, targets))
+            self.findings.add(
+                "RG220", *loc, resource=resource, owner=owner, hint=self.findings.suggest(resource, targets)
+            )
         return None
 
     def _check_after(self, name: str) -> None:
@@ -155,7 +163,7 @@ class PassBuilder:
             if other == name:
                 problem, hint = "which is itself", "remove it"
             elif other not in passes:
-                problem, hint = "which does not exist", did_you_mean(other, passes)
+                problem, hint = "which does not exist", self.findings.suggest(other, passes)
             else:
                 continue
             self.findings.add(
