@@ -12,6 +12,7 @@ from rendergraph.measure.truth.materials import Shading, shade_inputs
 from rendergraph.measure.truth.rays import Hits, Rays
 from rendergraph.measure.truth.surfaces import RINGS, Surfaces, pixel_rays
 from rendergraph.scene.draw_queues import QUEUES, draw_runs
+from rendergraph.scene.gpu_layout import place_textures
 from rendergraph.scene.scene import Alpha
 
 F64 = npt.NDArray[np.float64]

@@ -39,6 +39,7 @@ class PassBuilder:
     passes: dict[str, Pass] = field(default_factory=dict)
     files: dict[str, str | None] = field(default_factory=dict)  # what is wrong with each file named
     narrowed: dict[str, dict[str, str]] = field(default_factory=dict)  # by pass: its outputs that fit a narrower format
+    said: Mapping[str, set[str]] = field(default_factory=dict)  # what each resource's writers say that it holds
     cause: Exception | None = None  # of the first internal error: its traceback is for the node's author
 
     def make_nodes(self) -> dict[str, Node[Any]]:
@@ -55,17 +56,21 @@ class PassBuilder:
         """What a resource is sure to hold: the one word that all of its writers' ports agree on."""
         if resource.kind not in (Kind.TRANSIENT, Kind.PERSISTENT):
             return ""
-        said = {
-            writer.outputs[port].holds if port in writer.outputs else ""
-            for name, entry in self.findings.document.model.passes.items()
-            for port, written in entry.write.items()
-            if written == resource.name and (writer := self.nodes.get(name)) is not None
-        }
-        return said.pop() if len(said) == 1 else ""
+        said = self.said.get(resource.name, set())
+        return next(iter(said)) if len(said) == 1 else ""
+
+    def _all_said(self) -> dict[str, set[str]]:
+        """What the port of each writer of each resource says that it holds."""
+        said: dict[str, set[str]] = {}
+        for name, node in self.nodes.items():
+            for port, written in self.findings.document.model.passes[name].write.items():
+                said.setdefault(written, set()).add(node.outputs[port].holds if port in node.outputs else "")
+        return said
 
     def run(self, nodes: Mapping[str, Node[Any]], resources: Mapping[str, Resource | None]) -> None:
         """Fill ``passes`` and ``internal`` with all that can be built; mistakes go to the findings."""
         self.resources, self.nodes = resources, nodes
+        self.said = self._all_said()
         for name in self._build_order():
             if name in nodes:
                 self._expand_pass(name, nodes[name])
