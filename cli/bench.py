@@ -29,8 +29,8 @@ def bench(
     b: Annotated[
         list[str] | None, typer.Option("--b", metavar="PATH=VALUE", help="Override on side B alone (repeatable).")
     ] = None,
-    processes: Annotated[int, typer.Option("--processes", min=1, max=100, help="Fresh processes, one by one.")] = 5,
-    blocks: Annotated[int, typer.Option("--blocks", min=1, max=1000, help="Blocks of every side a process.")] = 4,
+    processes: Annotated[int, typer.Option("--processes", min=1, max=100, help="Fresh processes, one by one.")] = 10,
+    blocks: Annotated[int, typer.Option("--blocks", min=1, max=1000, help="Blocks of every side a process.")] = 3,
     frames: Annotated[int, typer.Option("--frames", min=1, max=1000, help="Timed frames a block.")] = 5,
     warm_up: Annotated[
         int, typer.Option("--warm-up", min=0, max=10000, help="Most frames run before a side must be steady.")

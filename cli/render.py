@@ -51,6 +51,9 @@ def render(
         ),
     ] = None,
     html: Annotated[bool, typer.Option("--html", help="Write report.html too: graph, times, memory, targets.")] = False,
+    bound: Annotated[
+        bool, typer.Option("--bound", help="Then run it perturbed, and record what the frame is bound by.")
+    ] = False,
     trace: Annotated[bool, typer.Option("--trace", help="Write trace.json too, for Perfetto.")] = False,
     poison: Annotated[bool, typer.Option("--poison", help="Fill every target with NaN before its first use.")] = False,
     no_alias: NoAliasOption = False,
@@ -83,6 +86,7 @@ def render(
     from rendergraph.document.load import load_document
     from rendergraph.document.whole_files import require_folder
     from rendergraph.measure.budget import check_run
+    from rendergraph.measure.perturb import perturb_document
     from rendergraph.plan.plan import PlanOptions
     from rendergraph.report.accuracy_findings import accuracy_findings
     from rendergraph.report.accuracy_table import accuracy_table
@@ -120,8 +124,17 @@ def render(
             judging.progress = progress
         result = render_document(document, options, progress)
         judged = judging.passes if judging else None
+        evidence = perturb_document(document, options, progress) if bound else None
         written = write_result(
-            result, document, output, page=page, trace=trace, full=full, judged=judged, errors=errors
+            result,
+            document,
+            output,
+            page=page,
+            trace=trace,
+            full=full,
+            judged=judged,
+            errors=errors,
+            bound=evidence,
         )
     report([*result.warnings, *(judging.notes if judging else ())])
     if format is Format.JSON:

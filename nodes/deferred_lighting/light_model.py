@@ -15,6 +15,9 @@ SHADOW_PORTS = {
     "cascades": Port("The cascades of the shadow map.", buffer=True, optional=True),
 }  # fmt: skip
 
+#: Lights that the smallest uniform block OpenGL 4.5 allows for (16 KiB) has room for, at 64 bytes each.
+MOST_UNIFORM_LIGHTS = 16384 // 64
+
 
 class ShadowParams(Params):
     """How the sun's shadow is filtered: the parameters of every node that takes :data:`SHADOW_PORTS`."""
@@ -43,12 +46,14 @@ def light_model(b: Builder, step: str, shadow_taps: int) -> tuple[dict[str, int]
     sun = b.requires("sun", step)
     shadow = sun and bool(connected) and _may_shadow(b, step)
     local_lights = b.requires("local_lights", step) and _may_light(b, step)
+    lights = max(1, b.features.local_lights)
     defines = {
         "SUN": int(sun),
         "SUN_SHADOW": int(shadow),
         "AMBIENT": int(b.requires("ambient", step)),
         "LOCAL_LIGHTS": int(local_lights),
         "SPOT_LIGHTS": int(local_lights and b.requires("spot_lights", step)),
+        "UNIFORM_LIGHTS": lights if local_lights and lights <= MOST_UNIFORM_LIGHTS else 0,
     }
     if not shadow:
         return defines, {}

@@ -12,6 +12,7 @@ from rendergraph.measure.truth.materials import Shading, shade_inputs
 from rendergraph.measure.truth.rays import Hits, Rays
 from rendergraph.measure.truth.surfaces import RINGS, Surfaces, pixel_rays
 from rendergraph.scene.draw_queues import QUEUES, draw_runs
+from rendergraph.scene.gpu_layout import place_textures
 from rendergraph.scene.scene import Alpha
 
 F64 = npt.NDArray[np.float64]
@@ -37,8 +38,8 @@ def blended_layers(seen: Surfaces) -> tuple[Layers, Bools]:
     scene, height, width = seen.rays.scene, *seen.hit.shape
     glass = Rays(scene, (Alpha.BLENDED,))
     draws = np.zeros(max(1, len(scene.instances)), dtype=np.int64)
-    order = [int(one) for run in draw_runs(scene, seen.camera.position)[QUEUES[Alpha.BLENDED]]
-             for one in run.commands["base_instance"]]  # fmt: skip
+    runs = draw_runs(scene, seen.camera.position, place_textures(scene))[QUEUES[Alpha.BLENDED]]
+    order = [int(one) for run in runs for one in run.commands["base_instance"]]
     draws[order] = np.arange(1, len(order) + 1)
     known = np.ones(height * width, dtype=bool)
     pixel, primitive, distance, weights, front = _through(glass, seen.origins, seen.directions, seen.hits.distance)

@@ -27,8 +27,11 @@ def scene_program(
         "NORMAL_MAP": normal_map,
         "BACK_FACES": not depth_only and b.requires("double_sided"),
         "UNLIT_SURFACES": not depth_only and b.requires("unlit"),
-        "TEXTURE_ARRAYS": b.features.texture_arrays,
         "TEXTURE_SLOTS": ALL_SLOTS if b.full else b.features.texture_slots,
+        "TEXTURE_TRANSFORMS": b.full or b.features.texture_transforms,
+        "TEXTURE_WRAPS": b.full or b.features.texture_wraps,
+        "SECOND_UV": b.full or b.features.second_uv,
+        "VERTEX_COLORS": b.full or b.features.vertex_colors,
     }
     return b.program("<scene.vert>", fragment, defines={**variant, **(defines or {})})
 

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Final, Protocol
+from itertools import pairwise
+from typing import Any, Final, Protocol
 
 from rendergraph.device import enums as e
 from rendergraph.device.clock_proof import ClockProof, prove_clock
 from rendergraph.device.context import Device
-from rendergraph.device.timestamps import create_timestamp, read_available, read_device_time, read_timestamp
+from rendergraph.device.timestamps import create_timestamp, read_available, read_device_time, read_timestamps
 
-#: Frames whose timestamps are expected to be in flight at once.
-RING: Final = 4
+#: Frames whose timestamps wait to be read: reading costs a call a pass, and a frame that is timed should not pay it.
+RING: Final = 32
 
 
 class Clock(Protocol):
     """Times the passes of a frame. Call ``begin`` and ``end`` round each pass, in order.
 
     ``end_frame`` gives the frame's nanoseconds a pass once they are known, else ``None``; ``drain`` waits for and
-    gives every frame not given out yet, oldest first. ``submit_ns`` and ``process_ns`` are the last frame's
+    gives every frame not given out yet, oldest first. ``submit_ns`` and ``process_ns`` are the last ended frame's
     wall time spent submitting and CPU time of all the process's threads, a pass; ``submit_starts`` when submitting
     began. ``starts`` are the drained frames' moments at which the device began each pass. Moments are nanoseconds of
     ``time.perf_counter_ns``, whichever counter measured them.
@@ -90,7 +92,12 @@ class FinishWallClock:
 
 @dataclass(slots=True)
 class TimestampClock:
-    """GPU timestamps around each pass, read some frames later so that nothing waits."""
+    """GPU timestamps between passes, read some frames later so that nothing waits.
+
+    A timestamp is taken when all work before it is done, so the end of a pass is the beginning of the next: one query
+    for both, which halves what recording costs. Nothing but passes may be submitted between ``begin`` of a frame's
+    first pass and ``end_frame``.
+    """
 
     device: Device
     proof: ClockProof
@@ -99,43 +106,50 @@ class TimestampClock:
     process_ns: list[int] = field(default_factory=list)
     submit_starts: list[int] = field(default_factory=list)
     starts: list[list[int]] = field(default_factory=list)
-    _free: list[list[int]] = field(default_factory=lambda: [[] for _ in range(RING)])
+    _free: list[list[int]] = field(default_factory=list)
     _queries: list[int] = field(default_factory=list)
     # (queries, passes, host time less device time), oldest first
     _pending: list[tuple[list[int], int, int]] = field(default_factory=list)
     _frames: list[list[int]] = field(default_factory=list)
     _begun: list[list[int]] = field(default_factory=list)
     _ahead: int = 0
-    _start: int = 0
-    _cpu: int = 0
+    _cpu: list[int] = field(default_factory=list)  # of the process, at each mark
+    _stamp: Callable[..., Any] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._stamp, _ = self.device.gl.repeated(self.device.gl.glQueryCounter)
 
     def begin_frame(self) -> None:
         """Start a frame. Where the device is behind by more frames than the ring holds, it grows: nothing waits."""
-        self._queries = self._free.pop(0) if self._free else []
-        self.submit_ns, self.process_ns, self.submit_starts = [], [], []
+        self._queries = self._free.pop() if self._free else []
+        self.submit_ns, self.process_ns, self.submit_starts, self._cpu = [], [], [], []
         self._ahead = time.perf_counter_ns() - read_device_time(self.device)
 
     def begin(self, index: int) -> None:
-        """Start pass ``index``."""
-        while len(self._queries) < 2 * index + 2:
-            self._queries.append(create_timestamp(self.device))
-        self._cpu = time.process_time_ns()
-        self._start = time.perf_counter_ns()
-        self.device.gl.glQueryCounter(self._queries[2 * index], e.TIMESTAMP)
+        """Start pass ``index``, and end the one before."""
+        self._mark()
 
     def end(self, index: int) -> None:
-        """End pass ``index``."""
-        self.device.gl.glQueryCounter(self._queries[2 * index + 1], e.TIMESTAMP)
-        self.submit_starts.append(self._start)
-        self.submit_ns.append(time.perf_counter_ns() - self._start)
-        self.process_ns.append(time.process_time_ns() - self._cpu)
+        """End pass ``index``: the next mark does."""
+
+    def _mark(self) -> None:
+        index = len(self._cpu)
+        if index == len(self._queries):
+            self._queries.append(create_timestamp(self.device))
+        self._cpu.append(time.process_time_ns())
+        self.submit_starts.append(time.perf_counter_ns())
+        self._stamp(self._queries[index], e.TIMESTAMP)
 
     def end_frame(self) -> list[int] | None:
-        """The oldest unread frame's nanoseconds a pass, if the device has finished it."""
+        """The oldest unread frame's nanoseconds a pass, if the ring is full and the device has finished it."""
+        self._mark()
+        self.submit_ns = [b - a for a, b in pairwise(self.submit_starts)]
+        self.process_ns = [b - a for a, b in pairwise(self._cpu)]
+        self.submit_starts.pop()
         self._pending.append((self._queries, len(self.submit_ns), self._ahead))
         self.device.gl.glFlush()
         queries, count, _ = self._pending[0]
-        if count and not read_available(self.device, queries[2 * count - 1]):
+        if len(self._pending) <= RING or not read_available(self.device, queries[count]):
             return None
         self._frames.append(self._collect())
         return self._frames[-1]
@@ -150,11 +164,11 @@ class TimestampClock:
 
     def _collect(self) -> list[int]:
         queries, count, ahead = self._pending.pop(0)
-        stamps = [read_timestamp(self.device, query) for query in queries[: 2 * count]]
+        stamps = read_timestamps(self.device, queries[: count + 1])
         self._free.append(queries)
-        self._begun.append([stamps[2 * i] + ahead for i in range(count)])
+        self._begun.append([stamp + ahead for stamp in stamps[:-1]])
         mask = (1 << self.proof.counter_bits) - 1  # a counter of fewer than 64 bits may have wrapped in between
-        return [(stamps[2 * i + 1] - stamps[2 * i]) & mask for i in range(count)]
+        return [(b - a) & mask for a, b in pairwise(stamps)]
 
 
 def choose_clock(device: Device) -> Clock:

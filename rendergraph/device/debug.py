@@ -133,7 +133,13 @@ class DebugLog:
         while self.gl.glGetError():  # the callback has reported it; a stale code would be blamed on the next call
             pass
         if found:
-            raise RenderGraphError(_diagnose(message) for message in found)
+            raise RenderGraphError(_diagnose(message, "RG500") for message in found)
+
+    def take_warnings(self) -> tuple[Diagnostic, ...]:
+        """The undefined behaviour that the driver noticed since the last time, each said once: RG507."""
+        found = tuple(_diagnose(message, "RG507") for message in self.warnings)
+        self.warnings.clear()
+        return found
 
     def take_errors(self) -> list[str]:
         """The texts collected so far, forgotten here: for a caller that has a better message of its own."""
@@ -144,10 +150,10 @@ class DebugLog:
         return texts
 
 
-def _diagnose(message: DebugMessage) -> Diagnostic:
+def _diagnose(message: DebugMessage, code: str) -> Diagnostic:
     where = f" in {message.scope}" if message.scope else ""
     what = f" on '{message.subject}'" if message.subject else ""
     return diagnose(
-        "RG500", message.position, where=where, what=what, detail=message.text,
+        code, message.position, where=where, what=what, detail=message.text,
         scope=message.scope, resource=message.subject,
     )  # fmt: skip

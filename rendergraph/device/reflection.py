@@ -42,6 +42,11 @@ class Unit:
     unit: int
     count: int
 
+    @property
+    def units(self) -> range:
+        """All of them."""
+        return range(self.unit, self.unit + self.count)
+
 
 @dataclass(frozen=True, slots=True)
 class Block:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 
 from rendergraph.device import enums as e
 from rendergraph.device.context import Device
@@ -20,6 +21,15 @@ def read_timestamp(device: Device, query: int) -> int:
     value = ctypes.c_uint64()
     device.gl.glGetQueryObjectui64v(query, e.QUERY_RESULT, ctypes.byref(value))
     return value.value
+
+
+def read_timestamps(device: Device, queries: Sequence[int]) -> list[int]:
+    """Several timestamps, as :func:`read_timestamp` reads one."""
+    values = (ctypes.c_uint64 * len(queries))()
+    read, _ = device.gl.repeated(device.gl.glGetQueryObjectui64v)
+    for index, query in enumerate(queries):
+        read(query, e.QUERY_RESULT, ctypes.byref(values, 8 * index))
+    return list(values)
 
 
 def read_available(device: Device, query: int) -> bool:

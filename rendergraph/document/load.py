@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from rendergraph.document.budget_checks import check_budget_names
+from rendergraph.document.collector import collector_paused
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.document.model_errors import MAX_MISTAKES, Mistake, validate_strictly
 from rendergraph.document.models import DocumentModel
@@ -63,6 +64,7 @@ class Document:
         return document_picture(self)
 
 
+@collector_paused()
 def load_document(path: str | Path, overrides: Sequence[str] = ()) -> Document:
     """Read and validate a graph file, or the shipped graph of that name; ``overrides`` are ``--set`` arguments.
 

@@ -9,9 +9,10 @@ import rendergraph
 from rendergraph.document.load import load_document
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.measure.bench_job import BenchJob, Side
-from rendergraph.measure.bench_process import run_worker
+from rendergraph.measure.bench_process import diagnostic, run_worker
 from rendergraph.measure.perturb_rounds import ROUNDS
 from rendergraph.measure.steady import BAND, ERRORS, HOLD, WINDOW
+from rendergraph.report.counters import driver_warnings
 
 SCHEMA: Final = "rendergraph.bench/1"
 Progress = Callable[[str, int, int], None]
@@ -32,6 +33,7 @@ class Bench:
         self._sides: dict[str, dict[str, Any]] = {}
         self._warm_up: dict[str, list[dict[str, Any]]] = {name: [] for name in job.sides}
         self._bound: dict[str, dict[str, Any]] = {}
+        self._driver: list[Diagnostic] = []
         self._complete = False
 
     def run(self, progress: Progress = lambda stage, done, total: None) -> None:
@@ -58,6 +60,8 @@ class Bench:
         kind, data = event["event"], event["data"]
         if kind == "block":
             self.blocks.append(data)
+        elif kind == "warnings":  # every process hears the same
+            self._driver += [found for found in map(diagnostic, data) if found not in self._driver]
         elif kind == "bound":
             self._bound[event["side"]] = data
         elif bound:
@@ -87,15 +91,19 @@ class Bench:
             },
             "blocks": self.blocks,
             "bound": self._bound,
+            "driver_warnings": driver_warnings(self._driver),
         }
 
     def findings(self) -> list[Diagnostic]:
-        """RG582 for every side that some process did not find steady within the warm-up frames allowed."""
-        return [
+        """RG582 for every side that some process did not find steady within the warm-up frames allowed, and what the
+        driver warned of (RG507).
+        """
+        unsteady = [
             diagnose("RG582", side=name, frames=self.job.most_warm_up)
             for name, runs in self._warm_up.items()
             if any(run["steady_from"] is None for run in runs)
         ]
+        return [*unsteady, *self._driver]
 
 
 def bench_sides(

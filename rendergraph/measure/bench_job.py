@@ -22,12 +22,13 @@ class BenchJob:
     """``processes`` fresh processes, each with ``blocks`` blocks of ``frames`` frames of every side.
 
     Sides are ``A`` and, to compare, ``B``. ``most_warm_up`` frames are run at the most before a side counts as steady.
-    ``bound`` adds perturbed runs that tell what a side is bound by.
+    ``bound`` adds perturbed runs that tell what a side is bound by. Many processes of few blocks, and not the other way
+    round: processes differ by more than the blocks of one do, and how much they differ is known only from them.
     """
 
     sides: dict[str, Side] = field(default_factory=dict)
-    processes: int = 5
-    blocks: int = 4
+    processes: int = 10
+    blocks: int = 3
     frames: int = 5
     size: tuple[int, int] | None = None
     scene: str | None = None

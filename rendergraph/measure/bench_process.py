@@ -52,7 +52,7 @@ def run_worker(job: BenchJob, process: int, *, bound: bool) -> Iterator[dict[str
             for line in worker.stdout:
                 event = json.loads(line)
                 if event["event"] == "error":
-                    raise RenderGraphError([_diagnostic(d) for d in event["diagnostics"]], event["exit_code"])
+                    raise RenderGraphError([diagnostic(d) for d in event["diagnostics"]], event["exit_code"])
                 yield event
             code = worker.wait()
             if code != 0:
@@ -73,6 +73,7 @@ def _end(code: int, last: str) -> str:
     return f"{how}: {last}" if last else how
 
 
-def _diagnostic(data: dict[str, Any]) -> Diagnostic:
+def diagnostic(data: dict[str, Any]) -> Diagnostic:
+    """A diagnostic as :func:`rendergraph.measure.bench_worker.plain` sent it."""
     position = Position(**data["position"]) if data["position"] else None
     return Diagnostic(data["code"], data["severity"], data["text"], data["help"], position, data["data"])

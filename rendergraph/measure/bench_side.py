@@ -36,6 +36,9 @@ class BenchSide:
         device.finish()
         self._first_ns = time.perf_counter_ns() - start
         self.counters = self.runner.count_frame(1)
+        self._inside: dict[str, list[StepCounters]] = {}
+        for subpass, counters in zip(self.planned.plan.order, self.counters, strict=True):
+            self._inside.setdefault(subpass.parent, []).append(counters)
         self._made = SteadyState(0, 0, 0)
         self._timed = 0
 
@@ -65,18 +68,16 @@ class BenchSide:
             self._made.bytes_uploaded + made.bytes_uploaded,
         )
         self._timed += 2 * frames
-        passes: dict[str, list[float]] = {}
-        parents = {subpass.name: subpass.parent for subpass in self.planned.plan.order}
-        for step in steps:
-            times = [milliseconds(ns) for ns in step.device_ns]
-            known = passes.get(parents[step.name])
-            passes[parents[step.name]] = (
-                times if known is None else [round(a + b, 6) for a, b in zip(known, times, strict=True)]
-            )
+        timed = {step.name: [milliseconds(ns) for ns in step.device_ns] for step in steps}
+        passes = {
+            name: [round(sum(values), 6) for values in zip(*(timed[step.name] for step in inside), strict=True)]
+            for name, inside in self._inside.items()
+        }
         return {
             "frame_ms": [milliseconds(ns) for ns in whole],
             "frame_submit_ms": [milliseconds(ns) for ns in handed],
             "passes": passes,
+            "subpasses": timed,
         }
 
     def steady_state(self) -> dict[str, int]:
@@ -91,9 +92,6 @@ class BenchSide:
         """What is exact or the same in every process, and what was done once."""
         plan, info, clock = self.planned.plan, self.device.info, self._clock
         facts = DeviceFacts(info.renderer, info.vendor, info.driver, clock.name, asdict(clock.proof))
-        inside: dict[str, list[StepCounters]] = {}
-        for subpass, counters in zip(plan.order, self.counters, strict=True):
-            inside.setdefault(subpass.parent, []).append(counters)
         return {
             "graph": self.side.graph,
             "set": list(self.side.overrides),
@@ -109,8 +107,9 @@ class BenchSide:
                     "node": plan.graph.passes[name].node,
                     "counters": add_counters(steps),
                     "statistics": add_statistics(steps),
+                    "subpasses": [{"name": step.name, "counters": add_counters([step])} for step in steps],
                 }
-                for name, steps in inside.items()
+                for name, steps in self._inside.items()
             ],
             "resources": resources_record(plan, self.document.model.title),
             "once_ms": {

@@ -3,7 +3,7 @@
     python -m rendergraph.measure.bench_worker
 
 Events: ``step`` (a unit of work is done), ``facts``, ``warm_up`` and ``steady`` of a side, ``block``,
-``bound`` of a side, ``error``.
+``bound`` of a side, ``warnings`` of the driver, ``error``.
 """
 
 from __future__ import annotations
@@ -12,10 +12,13 @@ import json
 import os
 import sys
 from dataclasses import asdict
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError
 from rendergraph.measure.bench_job import BenchJob
+
+if TYPE_CHECKING:
+    from rendergraph.device.context import Device
 
 
 class Events:
@@ -36,7 +39,7 @@ def work(job: BenchJob, process: int, events: Events) -> None:
     from rendergraph.device.clock import choose_clock
     from rendergraph.device.context import open_device
     from rendergraph.measure.bench_side import BenchSide
-    from rendergraph.measure.perturb import perturbed_runs
+    from rendergraph.measure.perturb import perturb_side
 
     device = open_device(job.device)
     clock = choose_clock(device)
@@ -48,8 +51,9 @@ def work(job: BenchJob, process: int, events: Events) -> None:
         events.send("step")
     if job.bound:
         for name, prepared in sides.items():
-            data = perturbed_runs(prepared, job, lambda: events.send("step"))
+            data = perturb_side(prepared, job, lambda: events.send("step"))
             events.send("bound", side=name, data=data)
+        _tell_warnings(device, events)
         return
     for block in range(job.blocks):
         order = job.order(process, block)
@@ -60,6 +64,11 @@ def work(job: BenchJob, process: int, events: Events) -> None:
         events.send("block", data={"process": process, "order": order, **dict(sorted(measured.items()))})
     for name, prepared in sides.items():
         events.send("steady", side=name, data=prepared.steady_state())
+    _tell_warnings(device, events)
+
+
+def _tell_warnings(device: Device, events: Events) -> None:
+    events.send("warnings", data=[plain(found) for found in device.debug.take_warnings()])
 
 
 def main() -> None:

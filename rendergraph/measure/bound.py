@@ -45,10 +45,11 @@ def bound_of(evidence: Evidence, limits: Thresholds = THRESHOLDS) -> str:
     waits = e.readback_bytes > 0 and e.readback_share >= limits.waiting
     if waits and e.no_readback is not None and e.no_readback <= limits.recovered:
         return "sync"
+    pixels = e.half_resolution is not None and e.half_resolution <= limits.pixels
     if e.no_draws > limits.drawing:
-        return "gpu" if e.half_resolution <= limits.pixels else "cpu"
+        return "gpu" if pixels else "cpu"
     small = e.primitives_per_draw is not None and e.primitives_per_draw < limits.small_draw
-    calls = e.nothing_rasterised >= limits.calling and e.half_resolution > limits.pixels
+    calls = e.nothing_rasterised >= limits.calling and not pixels
     return "draw_calls" if small and calls and e.submit_share >= limits.submitting else "gpu"
 
 

@@ -24,11 +24,13 @@ class RoundTimes:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """Shares of the frame (0..1) and what is left of it (1: all) under each perturbation."""
+    """Shares of the frame (0..1) and what is left of it (1: all) under each perturbation; ``half_resolution`` is None
+    for a graph that cannot be planned at half its size, ``no_readback`` for one that reads nothing back.
+    """
 
     submit_share: float
     readback_share: float
-    half_resolution: float
+    half_resolution: float | None
     nothing_rasterised: float
     no_draws: float
     no_readback: float | None
@@ -49,7 +51,7 @@ def weigh(rounds: Mapping[str, RoundTimes], counters: Sequence[StepCounters]) ->
     return Evidence(
         submit_share=max(0.0, base.submit_ms - base.readback_ms) / frame,
         readback_share=base.readback_ms / frame,
-        half_resolution=rounds["half_resolution"].frame_ms / frame,
+        half_resolution=rounds["half_resolution"].frame_ms / frame if "half_resolution" in rounds else None,
         nothing_rasterised=rounds["nothing_rasterised"].frame_ms / frame,
         no_draws=rounds["no_draws"].frame_ms / frame,
         no_readback=rounds["no_readback"].frame_ms / frame if "no_readback" in rounds else None,

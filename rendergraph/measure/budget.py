@@ -20,13 +20,14 @@ class Spending:
     """What a run took a frame. Times are medians in milliseconds, ``None`` or absent where nothing was timed.
 
     ``frame_ms`` is of whole frames; ``passes_ms`` goes by pass, and ``draws`` too, with every pass that ran;
-    ``steps_ms`` by sub-pass, ``pass.step``.
+    ``steps_ms`` by sub-pass, ``pass.step``. ``draw_calls`` are of the frame.
     """
 
     frame_ms: float | None = None
     passes_ms: Mapping[str, float] = field(default_factory=dict)
     steps_ms: Mapping[str, float] = field(default_factory=dict)
     draws: Mapping[str, int] = field(default_factory=dict)
+    draw_calls: int = 0
 
 
 def check_run(
@@ -41,6 +42,7 @@ def check_run(
         passes_ms=_medians((entry["name"], entry["ms"]["samples"]) for entry in passes),
         steps_ms=_medians((step["name"], step["ms"]["samples"]) for entry in passes for step in entry["subpasses"]),
         draws={entry["name"]: entry["counters"]["draws"] for entry in passes},
+        draw_calls=sum(entry["counters"]["draw_calls"] for entry in passes),
     )
     found = [*check_memory(document, resources), *check_spending(document, spent)]
     return _errors_first([finding for finding in found if not (judged and finding.code == "RG709")])
@@ -53,7 +55,13 @@ def check_bench(document: Document, bench: Mapping[str, Any], side: str) -> list
     spent = Spending(
         frame_ms=_median([sample for block in blocks for sample in block["frame_ms"]]),
         passes_ms=_medians((e["name"], [s for block in blocks for s in block["passes"][e["name"]]]) for e in passes),
+        steps_ms=_medians(
+            (step["name"], [s for block in blocks for s in block["subpasses"][step["name"]]])
+            for entry in passes
+            for step in entry["subpasses"]
+        ),
         draws={entry["name"]: entry["counters"]["draws"] for entry in passes},
+        draw_calls=sum(entry["counters"]["draw_calls"] for entry in passes),
     )
     who = f"side {side}: " if len(bench["sides"]) > 1 else ""
     resources = bench["sides"][side]["resources"]
@@ -120,7 +128,8 @@ def check_spending(document: Document, spent: Spending, *, who: str = "") -> lis
     if budget.draws is not None and total > budget.draws:
         name, most = _most(spent.draws)
         place = document.position("budget", "draws")
-        found.append(diagnose("RG704", place, who=who, found=total, limit=budget.draws, name=name, most=most))
+        values = {"found": total, "calls": spent.draw_calls, "limit": budget.draws}
+        found.append(diagnose("RG704", place, who=who, name=name, most=most, **values))
     return found
 
 

@@ -2,8 +2,7 @@
 
 The spread between the processes' means, against the spread of all samples, says how much less they are worth.
 
-Source: Kish, "Survey Sampling", 1965, section 5.4 (design effect); Satterthwaite, "An approximate distribution of
-estimates of variance components", 1946.
+Source: Kish, "Survey Sampling", 1965, section 5.4 (design effect).
 """
 
 from __future__ import annotations
@@ -75,6 +74,5 @@ def _by_process(sides: Sequence[Sampled]) -> Dependence:
     free_between, free_within = groups - len(sides), total - groups
     everything = (between + within) / (free_between + free_within)
     inflation = max(1.0, between / free_between / everything) if everything else 1.0
-    share = 1 - 1 / inflation  # of the variance, that is known only as well as the processes are many
-    spread = share**2 / free_between + ((1 - share) ** 2 / free_within if free_within else 0.0)
-    return Dependence(inflation, 1 / spread if spread else inf)
+    # Widened by the spread between processes, an error is known only as well as the processes are many.
+    return Dependence(inflation, free_between if inflation > 1.0 else inf)

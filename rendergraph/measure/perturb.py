@@ -8,13 +8,15 @@ does not.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from rendergraph.device import enums
-from rendergraph.device.context import Device
+from rendergraph.device.context import Device, open_device
+from rendergraph.document.load import Document
+from rendergraph.document.messages import RenderGraphError
 from rendergraph.measure.bench_job import BenchJob
 from rendergraph.measure.bench_side import BenchSide, plan_sized, prepare
 from rendergraph.measure.bound import classify
@@ -24,6 +26,9 @@ from rendergraph.plan.graph import CopyBuffer, CopyTexture, SubPass
 from rendergraph.plan.plan import Plan
 from rendergraph.run.commands import Command
 from rendergraph.run.geometry import SceneGeometry
+from rendergraph.run.plan_document import PlannedDocument, plan_document
+from rendergraph.run.render import Progress, RenderOptions
+from rendergraph.run.result import StepCounters
 from rendergraph.run.runner import Runner
 
 _WORK: Final = (
@@ -32,13 +37,27 @@ _WORK: Final = (
 )  # fmt: skip
 
 
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """What is perturbed: a prepared graph past its first frames, of which ``first`` is the next one to run. ``half`` is
+    its plan at half resolution, None where it has none.
+    """
+
+    device: Device
+    planned: PlannedDocument
+    half: PlannedDocument | None
+    runner: Runner
+    counters: Sequence[StepCounters]
+    first: int
+
+
 class Variant:
     """One way to run the frame: a runner, whether drawing is scissored away, and whether work is skipped."""
 
-    def __init__(self, side: BenchSide, runner: Runner, *, scissor: bool = False, skip: bool = False) -> None:
-        self._device, self._runner = side.device, runner
+    def __init__(self, subject: Subject, runner: Runner, *, scissor: bool = False, skip: bool = False) -> None:
+        self._device, self._runner = subject.device, runner
         self._scissor, self._skip = scissor, skip
-        self._next = side.next
+        self._next = subject.first
         self._skipped: dict[int, Command] = {}
 
     def round(self, frames: int) -> RoundTimes:
@@ -86,20 +105,76 @@ class Variant:
         return self._skipped[id(command)]
 
 
-def perturbed_runs(side: BenchSide, job: BenchJob, step: Callable[[], None]) -> dict[str, Any]:
-    """Rounds of every variant in turn, and what they say the side is bound by."""
-    width, height = side.planned.plan.graph.frame.width, side.planned.plan.graph.frame.height
-    half = plan_sized(side, job, (max(1, width // 2), max(1, height // 2)))
-    made = [prepare(side.device, half)]
+def perturb_side(side: BenchSide, job: BenchJob, step: Callable[[], None]) -> dict[str, Any]:
+    """What a side of a bench is bound by."""
+    half = _at_half_resolution(side.planned, lambda size: plan_sized(side, job, size))
+    return perturbed_runs(Subject(side.device, side.planned, half, side.runner, side.counters, side.next), step)
+
+
+def perturb_document(
+    document: Document, options: RenderOptions, progress: Progress = lambda stage, done, total: None
+) -> dict[str, Any]:
+    """What a document's frame is bound by, as `rg render --bound` records it. It is run anew, so that nothing of a
+    render's own times or images is disturbed.
+
+    :raises RenderGraphError: for every mistake of the document, its files or its shaders, and where no GL is.
+    """
+
+    def planned_at(size: tuple[int, int] | None) -> PlannedDocument:
+        return plan_document(
+            document, options.plan, scene=options.scene, size=size, frames=options.frames, full=options.full
+        )
+
+    done = 0
+
+    def step() -> None:
+        nonlocal done
+        progress("perturbed runs", done, ROUNDS)
+        done += 1
+
+    planned = planned_at(options.size)
+    device = open_device(options.device)
+    runner = prepare(device, planned)
+    try:
+        runner.run_frame(0)
+        counters = runner.count_frame(1)
+        half = _at_half_resolution(planned, planned_at)
+        step()
+        return perturbed_runs(Subject(device, planned, half, runner, counters, planned.plan.graph.frame.count), step)
+    finally:
+        runner.release()
+        device.debug.take_warnings()  # the render has told them; of perturbed work they would mislead
+
+
+def _at_half_resolution(
+    planned: PlannedDocument, planned_at: Callable[[tuple[int, int]], PlannedDocument]
+) -> PlannedDocument | None:
+    frame = planned.plan.graph.frame
+    try:
+        return planned_at((max(1, frame.width // 2), max(1, frame.height // 2)))
+    except RenderGraphError:  # sizes that are fixed, and fit this frame alone
+        return None
+
+
+def perturbed_runs(subject: Subject, step: Callable[[], None]) -> dict[str, Any]:
+    """Rounds of every variant in turn, and what they say the frame is bound by."""
+    made: list[Runner] = []
+
+    def another(planned: PlannedDocument) -> Runner:
+        made.append(prepare(subject.device, planned))
+        return made[-1]
+
     variants = {
-        "base": Variant(side, side.runner),
-        "half_resolution": Variant(side, made[0]),
-        "nothing_rasterised": Variant(side, side.runner, scissor=True),
-        "no_draws": Variant(side, side.runner, skip=True),
+        "base": Variant(subject, subject.runner),
+        "nothing_rasterised": Variant(subject, subject.runner, scissor=True),
+        "no_draws": Variant(subject, subject.runner, skip=True),
     }
-    if any(reads_back(subpass) for subpass in side.planned.plan.order):
-        made.append(prepare(side.device, replace(side.planned, plan=without_readback(side.planned.plan))))
-        variants["no_readback"] = Variant(side, made[1])
+    if subject.half is not None:
+        variants["half_resolution"] = Variant(subject, another(subject.half))
+    plan = subject.planned.plan
+    if any(reads_back(subpass) for subpass in plan.order):
+        on_device = another(replace(subject.planned, plan=without_readback(plan)))
+        variants["no_readback"] = Variant(subject, on_device)
     rounds: dict[str, list[RoundTimes]] = {name: [] for name in variants}
     for variant in variants.values():
         variant.round(2)  # compiles what this variant alone needs
@@ -110,7 +185,7 @@ def perturbed_runs(side: BenchSide, job: BenchJob, step: Callable[[], None]) -> 
         step()
     for runner in made:
         runner.release()
-    return classify(rounds, side.counters)
+    return classify(rounds, subject.counters)
 
 
 def reads_back(subpass: SubPass) -> bool:

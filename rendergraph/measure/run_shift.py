@@ -1,9 +1,15 @@
-"""The shift in time between two sets of runs: rank test, interval, and how many independent samples it rests on."""
+"""The shift in time between two sets of runs: rank test, interval, and how many independent samples it rests on.
+
+Times vary in proportion to themselves, so they are compared by the logarithm of their ratio: a pass that takes half the
+time is as far from unchanged as one that takes twice, and no interval reaches below no time at all. Milliseconds are
+then those of the median before. Times of zero (below the clock's resolution) have no logarithm; where there are any,
+differences are compared.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import expm1, inf, sqrt
 from typing import Final
 
 import numpy as np
@@ -56,14 +62,17 @@ def shift_of_runs(before: Runs, after: Runs, alpha: float) -> Shift:
     test = mann_whitney(a, b, dependence.inflation, dependence.freedom)
     medians = float(_median(np.concatenate(before.samples))), float(_median(np.concatenate(after.samples)))
     least = min(len(a), len(b))
-    interval = shift_between(a, b, test, alpha)
+    if _have_logarithms(a, b):
+        interval = _of_ratio(shift_between(np.log(a), np.log(b), test, alpha), medians[0])
+    else:
+        interval = _of_difference(shift_between(a, b, test, alpha), medians[0])
     return Shift("mann_whitney", samples, medians, test.p_value(), interval, least, least / dependence.inflation)
 
 
 def shift_of_blocks(before: Runs, after: Runs, alpha: float) -> Shift:
-    """Signed rank of the differences of medians, block by block: run i of one side ran next to run i of the other.
+    """Signed rank of the log ratios of medians, block by block: run i of one side ran next to run i of the other.
 
-    Where the differences of one process resemble each other, Student's t widened by their design effect.
+    Where the ratios of one process resemble each other, Student's t widened by their design effect.
     """
     pairs = [
         (_median(a), _median(b), process)
@@ -74,20 +83,44 @@ def shift_of_blocks(before: Runs, after: Runs, alpha: float) -> Shift:
     if not pairs:
         return Shift("signed_rank", samples, None, None, Interval(0.0, -inf, inf), 0, 0.0)
     medians = np.array([pair[:2] for pair in pairs], np.float64)
-    runs = Runs(tuple((medians[:, 1] - medians[:, 0]).reshape(-1, 1)), tuple(pair[2] for pair in pairs))
-    middle = float(_median(medians[:, 0])), float(_median(medians[:, 1]))
-    shortened = _shorten(runs)
-    differences, count = shortened.values, len(shortened.values)
+    a, b = medians[:, 0], medians[:, 1]
+    by_ratio = _have_logarithms(a, b)
+    apart = np.log(b) - np.log(a) if by_ratio else b - a
+    middle = float(_median(a)), float(_median(b))
+    shortened = _shorten(Runs(tuple(apart.reshape(-1, 1)), tuple(pair[2] for pair in pairs)))
+    in_ms = _of_ratio if by_ratio else _of_difference
+    values, count = shortened.values, len(shortened.values)
     dependence = dependence_of_pairs(shortened)
     untied = signed_rank(np.arange(1.0, count + 1))
-    interval = shift_of_pairs(differences, untied, alpha)
+    interval = shift_of_pairs(values, untied, alpha)
     if dependence.inflation == 1.0:
-        p = signed_rank(differences).p_value()
-        return Shift("signed_rank", samples, middle, p, interval, count, count)
-    error = float(differences.std(ddof=1)) * sqrt(dependence.inflation / count)
+        p = signed_rank(values).p_value()
+        return Shift("signed_rank", samples, middle, p, in_ms(interval, middle[0]), count, count)
+    error = float(values.std(ddof=1)) * sqrt(dependence.inflation / count)
     interval = _student_interval(interval.estimate, error, dependence.freedom, alpha)
     p = two_sided_p(interval.estimate / error, dependence.freedom) if error else 1.0
-    return Shift("clustered_t", samples, middle, p, interval, count, count / dependence.inflation)
+    return Shift("clustered_t", samples, middle, p, in_ms(interval, middle[0]), count, count / dependence.inflation)
+
+
+def _have_logarithms(a: Floats, b: Floats) -> bool:
+    return bool((a > 0).all() and (b > 0).all())
+
+
+def _of_ratio(interval: Interval, before: float) -> Interval:
+    """Log ratios as milliseconds more than ``before``; infinite limits stay so."""
+    return Interval(*(before * _expm1(x) for x in (interval.estimate, interval.low, interval.high)))
+
+
+def _expm1(log_ratio: float) -> float:
+    """Of a shift that no double holds (Student's t reaches far on few processes), no limit is known."""
+    if log_ratio == -inf:
+        return -inf
+    return expm1(log_ratio) if log_ratio < 700 else inf
+
+
+def _of_difference(interval: Interval, before: float) -> Interval:
+    """Differences in milliseconds; what took ``before`` cannot be faster by more than that."""
+    return Interval(*(x if x == -inf else max(-before, x) for x in (interval.estimate, interval.low, interval.high)))
 
 
 def _student_interval(estimate: float, error: float, freedom: float, alpha: float) -> Interval:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +37,8 @@ from rendergraph.scene.features import SceneFeatures, ViewFeatures
 
 SHADERS = Path(__file__).resolve().parent.parent / "shaders"
 
+_FULLSCREEN, _STATE = Fullscreen(), State()
+
 
 @dataclass
 class Builder:
@@ -59,6 +61,7 @@ class Builder:
     subpasses: list[SubPass] = field(default_factory=list)
     decisions: list[Decision] = field(default_factory=list)
     narrowed: dict[str, str] = field(default_factory=dict)  # output resource -> a format that loses nothing
+    _names: set[str] = field(default_factory=set)  # of the sub-passes
 
     # ---- what is connected
 
@@ -173,9 +176,10 @@ class Builder:
         words are written out.
         """
         stages = tuple(sorted((_stage(file), self._shader(file, user)) for file in files))
-        variant = {"DEPTH_REVERSED": int(self.frame.depth == "reversed")}
-        variant |= {k: int(v) if isinstance(v, bool) else v for k, v in (defines or {}).items()}
-        return Program(stages, tuple(sorted((key, str(value)) for key, value in variant.items())))
+        variant = {"DEPTH_REVERSED": "1" if self.frame.depth == "reversed" else "0"}
+        if defines:
+            variant |= {k: str(int(v) if isinstance(v, bool) else v) for k, v in defines.items()}
+        return _program(stages, tuple(sorted(variant.items())))
 
     def _shader(self, file: str, user: bool) -> Path:
         if file.startswith("<"):
@@ -200,10 +204,10 @@ class Builder:
 
         A program given without a vertex stage draws with the shared full-screen vertex shader.
         """
-        work = work or Fullscreen()
-        state = state or State()
+        work = work or _FULLSCREEN
+        state = state or _STATE
         if isinstance(work, Fullscreen) and not any(stage == "vertex" for stage, _ in program.stages):
-            program = replace(program, stages=(*program.stages, ("vertex", _joined(SHADERS, "fullscreen.vert"))))
+            program = _program((*program.stages, ("vertex", _joined(SHADERS, "fullscreen.vert"))), program.defines)
         accesses = [attachment_access(a, Usage.COLOR) for a in color]
         clears = {a.resource: a.clear for a in color if a.clear is not None}
         if depth is not None:
@@ -286,7 +290,8 @@ class Builder:
         return f"{self.pass_name}.{step}"
 
     def _add(self, subpass: SubPass) -> None:
-        assert all(subpass.name != other.name for other in self.subpasses), f"{subpass.name} is added twice"
+        assert subpass.name not in self._names, f"{subpass.name} is added twice"
+        self._names.add(subpass.name)
         self.subpasses.append(subpass)
 
 
@@ -294,6 +299,11 @@ _SUFFIX = {
     ".vert": "vertex", ".frag": "fragment", ".geom": "geometry",
     ".tesc": "tess_control", ".tese": "tess_evaluation", ".comp": "compute",
 }  # fmt: skip
+
+
+@lru_cache(4096)  # many passes share a program
+def _program(stages: tuple[tuple[str, Path], ...], defines: tuple[tuple[str, str], ...]) -> Program:
+    return Program(stages, defines)
 
 
 @cache  # paths are slow to make, and many passes share a shader

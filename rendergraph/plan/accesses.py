@@ -28,8 +28,11 @@ class Usage(Enum):
     CLEAR = "clear"
     HOST_READ = "host_read"
 
+    #: Members are single objects, so identity will do; hashing the name costs a call of Python.
+    __hash__ = object.__hash__
+
     def __init__(self, word: str) -> None:
-        # Plain attributes: the planner asks for them once an access, and hashing an enum member is slow.
+        # Plain attributes: the planner asks for them once an access.
         #: Whether it is a shader store or atomic, which GL orders only by ``glMemoryBarrier`` (GL 4.5, 7.13.2).
         self.incoherent = word in {"image_write", "image_update", "storage_write", "storage_update"}
         #: Whether the access can change the resource.

@@ -13,12 +13,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rendergraph.document.formats import FORMATS
-from rendergraph.plan.graph import BufferDesc, Decision, Graph, Kind, Resource, TextureDesc
+from rendergraph.plan.alias_reasons import explain_buffers, explain_never_pooled, explain_textures
+from rendergraph.plan.graph import Decision, Graph, TextureDesc
 from rendergraph.plan.lifetimes import find_load, storage_bytes, transients
 from rendergraph.plan.packing import Block, pack
 from rendergraph.plan.plan import BufferRange, Lifetime, MemoryTotals, TextureSlot
-
-_SHOWN = 8  # names listed as evidence
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,46 +35,51 @@ class Memory:
 def assign_memory(graph: Graph, lifetimes: Mapping[str, Lifetime], enabled: bool) -> Memory:
     """Place the transient resources. With ``enabled`` false each has memory of its own."""
     names = transients(graph, lifetimes)
-    textures = [n for n in names if isinstance(graph.resources[n].desc, TextureDesc)]
-    buffers = [n for n in names if isinstance(graph.resources[n].desc, BufferDesc)]
-    decisions = _never_pooled(graph, lifetimes)
+    sizes = {name: storage_bytes(graph.resources[name]) for name in names}
+    descs = {n: d for n in names if isinstance(d := graph.resources[n].desc, TextureDesc)}
+    buffers = [n for n in names if n not in descs]
+    decisions = explain_never_pooled(graph, lifetimes)
 
-    classes = _group(graph, textures, by_view_class=True)
+    classes = _group(descs, by_view_class=True)
     slots: list[TextureSlot] = []
     slot_of: dict[str, int] = {}
+    view_bytes = 0  # of the slots, whether or not sharing is enabled
     for _, members in sorted(classes.items()):
-        groups = left_edge(members, lifetimes) if enabled else [[name] for name in members]
+        coloured = left_edge(members, lifetimes)
+        view_bytes += descs[members[0]].bytes * len(coloured)
+        groups = coloured if enabled else [[name] for name in members]
         for tenants in groups:
             slot_of |= dict.fromkeys(tenants, len(slots))
-            slots.append(TextureSlot(_storage([_texture(graph, t) for t in tenants]), tuple(tenants)))
+            slots.append(TextureSlot(_storage([descs[t] for t in tenants]), tuple(tenants)))
         if enabled:
-            decisions += _explain_textures(members, groups, len(slots) - len(groups), lifetimes)
+            decisions += explain_textures(members, groups, len(slots) - len(groups), lifetimes)
 
-    blocks = [Block(storage_bytes(graph.resources[n]), lifetimes[n].first, lifetimes[n].last) for n in buffers]
-    if enabled:
-        offsets, heap = pack(blocks, _load(blocks))
-    else:
-        offsets, heap = _one_after_another(blocks)
+    blocks = [Block(sizes[n], lifetimes[n].first, lifetimes[n].last) for n in buffers]
+    packed, packed_bytes = pack(blocks, _load(blocks))
+    offsets, heap = (packed, packed_bytes) if enabled else _one_after_another(blocks)
     buffer_of = {n: BufferRange(at, graph.resources[n].desc.bytes) for n, at in zip(buffers, offsets, strict=True)}
     if enabled:
-        decisions += _explain_buffers(buffers, blocks, offsets)
+        decisions += explain_buffers(buffers, blocks, offsets)
     else:
         decisions += [Decision("alias", "aliasing_off", name) for name in names]
 
-    unshared = sum(storage_bytes(graph.resources[n]) for n in names)
-    pooled = heap if enabled else pack(blocks, _load(blocks))[1]
-    exact = pooled + _colour_bytes(graph, _group(graph, textures, by_view_class=False), lifetimes)
-    view = pooled + _colour_bytes(graph, classes, lifetimes)
-    load, peak = find_load(graph, lifetimes)
-    every = [Block(storage_bytes(graph.resources[n]), lifetimes[n].first, lifetimes[n].last) for n in names]
-    placed = min(pack(every, load)[1], view)  # the slots side by side are a placement too
+    exact = packed_bytes + sum(
+        descs[members[0]].bytes * len(left_edge(members, lifetimes))
+        for members in _group(descs, by_view_class=False).values()
+    )
+    view = packed_bytes + view_bytes
+    load, peak = find_load(lifetimes, sizes)
+    placed = view  # the slots side by side are a placement too
+    if view > load:
+        every = [Block(sizes[n], lifetimes[n].first, lifetimes[n].last) for n in names]
+        placed = min(pack(every, load)[1], view)
     used = sum(slot.desc.bytes for slot in slots) + heap
     return Memory(
         tuple(slots),
         slot_of,
         buffer_of,
         heap,
-        MemoryTotals(unshared, exact, view, placed, load, used, peak),
+        MemoryTotals(sum(sizes.values()), exact, view, placed, load, used, peak),
         decisions,
     )
 
@@ -83,17 +87,10 @@ def assign_memory(graph: Graph, lifetimes: Mapping[str, Lifetime], enabled: bool
 # ---------------------------------------------------------------- textures
 
 
-def _texture(graph: Graph, name: str) -> TextureDesc:
-    desc = graph.resources[name].desc
-    assert isinstance(desc, TextureDesc)
-    return desc
-
-
-def _group(graph: Graph, textures: Sequence[str], by_view_class: bool) -> dict[tuple[object, ...], list[str]]:
+def _group(descs: Mapping[str, TextureDesc], by_view_class: bool) -> dict[tuple[object, ...], list[str]]:
     """Textures that may share a slot, by what they must have in common."""
     classes: dict[tuple[object, ...], list[str]] = {}
-    for name in textures:
-        desc = _texture(graph, name)
+    for name, desc in descs.items():
         exact = desc.samples > 1 or not by_view_class
         kind = f"={desc.format}" if exact else FORMATS[desc.format].view_class
         size = desc.width, desc.height, desc.layers, desc.mips, desc.samples
@@ -114,12 +111,6 @@ def left_edge(members: Sequence[str], lifetimes: Mapping[str, Lifetime]) -> list
             tracks.append([name])
         heapq.heappush(free, (lifetimes[name].last, track))
     return tracks
-
-
-def _colour_bytes(
-    graph: Graph, classes: Mapping[tuple[object, ...], list[str]], lifetimes: Mapping[str, Lifetime]
-) -> int:
-    return sum(_texture(graph, m[0]).bytes * len(left_edge(m, lifetimes)) for m in classes.values())
 
 
 def _storage(tenants: Sequence[TextureDesc]) -> TextureDesc:
@@ -149,68 +140,3 @@ def _one_after_another(blocks: Sequence[Block]) -> tuple[list[int], int]:
         offsets.append(end)
         end += block.bytes
     return offsets, end
-
-
-# ---------------------------------------------------------------- reasons
-
-
-def _never_pooled(graph: Graph, lifetimes: Mapping[str, Lifetime]) -> list[Decision]:
-    found = [graph.resources[name] for name in lifetimes if graph.resources[name].kind is not Kind.TRANSIENT]
-    return [Decision("alias", f"never_pooled_{r.kind.value}", r.name, _history_evidence(r)) for r in found]
-
-
-def _history_evidence(resource: Resource) -> dict[str, str]:
-    return {"previous_of": resource.previous_of} if resource.previous_of else {}
-
-
-def _explain_textures(
-    members: Sequence[str], groups: Sequence[Sequence[str]], base: int, lifetimes: Mapping[str, Lifetime]
-) -> list[Decision]:
-    decisions: list[Decision] = []
-    for number, tenants in enumerate(groups):
-        for name in tenants:
-            if len(tenants) > 1:
-                others = [t for t in tenants[: _SHOWN + 1] if t != name]
-                evidence = {"slot": base + number, "with": others[:_SHOWN]}
-                decisions.append(Decision("alias", "shares_slot", name, evidence))
-            elif len(members) == 1:
-                decisions.append(Decision("alias", "only_one_in_class", name))
-            else:
-                with_ = _overlapping(name, members, lifetimes)
-                decisions.append(Decision("alias", "overlaps_in_time", name, {"with": with_}))
-    return decisions
-
-
-def _overlapping(name: str, members: Sequence[str], lifetimes: Mapping[str, Lifetime]) -> list[str]:
-    life = lifetimes[name]
-    found: list[str] = []
-    for other in members:
-        if other != name and lifetimes[other].first <= life.last and life.first <= lifetimes[other].last:
-            found.append(other)
-            if len(found) == _SHOWN:
-                break
-    return found
-
-
-def _explain_buffers(names: Sequence[str], blocks: Sequence[Block], offsets: Sequence[int]) -> list[Decision]:
-    """Buffers whose bytes are used again by another share the heap; the rest are alone, and why."""
-    decisions: list[Decision] = []
-    by_offset = sorted(range(len(names)), key=offsets.__getitem__)
-    sharing: dict[int, list[str]] = {i: [] for i in by_offset}
-    active: list[tuple[int, int]] = []  # (end, buffer)
-    for i in by_offset:
-        while active and active[0][0] <= offsets[i]:
-            heapq.heappop(active)
-        for _, a in active[:_SHOWN]:  # some of those below whose bytes reach up here
-            sharing[a].append(names[i])
-            sharing[i].append(names[a])
-        heapq.heappush(active, (offsets[i] + blocks[i].bytes, i))
-    for i, name in enumerate(names):
-        if sharing[i]:
-            decisions.append(Decision("alias", "shares_heap_range", name, {"with": sorted(sharing[i])[:_SHOWN]}))
-        elif len(names) == 1:
-            decisions.append(Decision("alias", "only_one_in_class", name))
-        else:
-            apart = any(b.first > blocks[i].last or b.last < blocks[i].first for b in blocks)
-            decisions.append(Decision("alias", "sharing_saves_nothing" if apart else "overlaps_in_time", name))
-    return decisions

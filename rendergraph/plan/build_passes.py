@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from rendergraph.document.messages import RenderGraphError
-from rendergraph.document.suggest import did_you_mean
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node
 from rendergraph.node.discovery import find_node
@@ -20,6 +19,9 @@ from rendergraph.plan.check_whole import check_files
 from rendergraph.plan.findings import Findings
 from rendergraph.plan.graph import Decision, Frame, Kind, Pass, Resource
 from rendergraph.scene.features import SceneFeatures
+
+#: What a node is told of the scene in a graph that has none.
+NO_SCENE = SceneFeatures()
 
 
 @dataclass
@@ -37,6 +39,7 @@ class PassBuilder:
     passes: dict[str, Pass] = field(default_factory=dict)
     files: dict[str, str | None] = field(default_factory=dict)  # what is wrong with each file named
     narrowed: dict[str, dict[str, str]] = field(default_factory=dict)  # by pass: its outputs that fit a narrower format
+    said: Mapping[str, set[str]] = field(default_factory=dict)  # what each resource's writers say that it holds
     cause: Exception | None = None  # of the first internal error: its traceback is for the node's author
 
     def make_nodes(self) -> dict[str, Node[Any]]:
@@ -53,17 +56,21 @@ class PassBuilder:
         """What a resource is sure to hold: the one word that all of its writers' ports agree on."""
         if resource.kind not in (Kind.TRANSIENT, Kind.PERSISTENT):
             return ""
-        said = {
-            writer.outputs[port].holds if port in writer.outputs else ""
-            for name, entry in self.findings.document.model.passes.items()
-            for port, written in entry.write.items()
-            if written == resource.name and (writer := self.nodes.get(name)) is not None
-        }
-        return said.pop() if len(said) == 1 else ""
+        said = self.said.get(resource.name, set())
+        return next(iter(said)) if len(said) == 1 else ""
+
+    def _all_said(self) -> dict[str, set[str]]:
+        """What the port of each writer of each resource says that it holds."""
+        said: dict[str, set[str]] = {}
+        for name, node in self.nodes.items():
+            for port, written in self.findings.document.model.passes[name].write.items():
+                said.setdefault(written, set()).add(node.outputs[port].holds if port in node.outputs else "")
+        return said
 
     def run(self, nodes: Mapping[str, Node[Any]], resources: Mapping[str, Resource | None]) -> None:
         """Fill ``passes`` and ``internal`` with all that can be built; mistakes go to the findings."""
         self.resources, self.nodes = resources, nodes
+        self.said = self._all_said()
         for name in self._build_order():
             if name in nodes:
                 self._expand_pass(name, nodes[name])
@@ -101,7 +108,7 @@ class PassBuilder:
             document.position("passes", name, key=True),
             len(self.findings.errors),
         )
-        features, folder = self.features or SceneFeatures(), self.findings.folder
+        features, folder = self.features or NO_SCENE, self.findings.folder
         builder = Builder(
             name, node.folder, folder, self.frame, features, self.full, found.inputs, found.outputs, at,
             {port: self._held(resource) for port, resource in found.inputs.items()},
@@ -126,8 +133,12 @@ class PassBuilder:
 
     def _connect(self, name: str, section: str, ports: Mapping[str, str]) -> dict[str, Resource]:
         """Port to resource, of those that exist."""
-        found = ((port, self._find(name, section, port, resource)) for port, resource in ports.items())
-        return {port: resource for port, resource in found if resource is not None}
+        connected: dict[str, Resource] = {}
+        for port, resource in ports.items():
+            found = self._find(name, section, port, resource)
+            if found is not None:
+                connected[port] = found
+        return connected
 
     def _find(self, name: str, section: str, port: str, resource: str) -> Resource | None:
         """The resource connected to a port, or ``None`` after reporting why there is none."""
@@ -136,9 +147,9 @@ class PassBuilder:
         passes, loc = self.findings.document.model.passes, ("passes", name, section, port)
         owner, dot, _ = resource.partition(".")
         if not dot:
-            self.findings.add("RG212", *loc, resource=resource, hint=did_you_mean(resource, self.resources))
+            self.findings.add("RG212", *loc, resource=resource, hint=self.findings.suggest(resource, self.resources))
         elif owner not in passes:
-            self.findings.add("RG212", *loc, resource=resource, hint=did_you_mean(owner, passes))
+            self.findings.add("RG212", *loc, resource=resource, hint=self.findings.suggest(owner, passes))
         elif section == "write":
             hint = "declare a resource and write that one"
             self.findings.add("RG220", *loc, resource=resource, owner=owner, hint=hint)
@@ -146,7 +157,9 @@ class PassBuilder:
             targets = self.internal[owner]
             if resource in targets:
                 return targets[resource]
-            self.findings.add("RG220", *loc, resource=resource, owner=owner, hint=did_you_mean(resource, targets))
+            self.findings.add(
+                "RG220", *loc, resource=resource, owner=owner, hint=self.findings.suggest(resource, targets)
+            )
         return None
 
     def _check_after(self, name: str) -> None:
@@ -155,7 +168,7 @@ class PassBuilder:
             if other == name:
                 problem, hint = "which is itself", "remove it"
             elif other not in passes:
-                problem, hint = "which does not exist", did_you_mean(other, passes)
+                problem, hint = "which does not exist", self.findings.suggest(other, passes)
             else:
                 continue
             self.findings.add(

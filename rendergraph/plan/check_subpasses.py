@@ -81,6 +81,8 @@ def _check_access(name: str, access: Access, resource: Resource, findings: Findi
 
 
 def _check_range(name: str, access: Access, resource: Resource, desc: TextureDesc, findings: Findings) -> None:
+    if access.mip is None and access.layer is None:
+        return
     layers = {Target.CUBE: 6, Target.CUBE_ARRAY: 6 * desc.layers}.get(desc.target, desc.layers)
     for part, index, count in (("mip", access.mip, desc.mips), ("layer", access.layer, max(layers, desc.layers))):
         if index is not None and index >= count:

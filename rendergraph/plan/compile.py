@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rendergraph.document.collector import collector_paused
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.plan.alias import assign_memory
 from rendergraph.plan.barrier_intents import compare_intents
@@ -20,6 +21,7 @@ class PlanError(RuntimeError):
     """The planner broke one of its own rules: a defect of this library, never the user's mistake."""
 
 
+@collector_paused()
 def compile_plan(graph: Graph, options: PlanOptions | None = None) -> tuple[Plan, tuple[Diagnostic, ...]]:
     """Plan a graph; also warnings and notes. Equal graphs give equal plans, however their passes are listed.
 

@@ -7,6 +7,7 @@ that nobody made are errors here.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
@@ -95,18 +96,23 @@ def _undefined_loads(index: Index, blank: dict[tuple[int, int], int]) -> list[Di
     """
     errors: list[Diagnostic] = []
     told: set[tuple[int, int]] = set()
+    loaded: dict[int, Counter[int]] = {}  # resource -> sub-pass -> cells that it loads
+    writers: dict[int, set[int]] = {}
     for (subpass, number), cells in sorted(blank.items()):
         resource, owner = index.resources[number], index.pass_of[subpass]
         if resource.kind in PRESET or (owner, number) in told:
             continue
-        touches = [dict(index.touches[cell]).get(subpass, 0) for cell in index.cells_of[resource.name]]
-        if cells < sum(bool(flags & LOADS) for flags in touches):
+        if number not in loaded:
+            touches = [touch for cell in index.cells_of[resource.name] for touch in index.touches[cell]]
+            loaded[number] = Counter(s for s, flags in touches if flags & LOADS)
+            writers[number] = {s for s, flags in touches if flags & WRITES}
+        if cells < loaded[number][subpass]:
             continue
         told.add((owner, number))
-        if not any(flags & WRITES for cell in index.cells_of[resource.name] for _, flags in index.touches[cell]):
+        if not writers[number]:
             code = "RG231"
         else:
-            code = "RG232" if any(flags & WRITES for flags in touches) else "RG237"
+            code = "RG232" if subpass in writers[number] else "RG237"
         found = index.passes[owner]
         errors.append(diagnose(code, found.position, resource=resource.name, name=found.name))
     return errors

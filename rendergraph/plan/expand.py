@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from rendergraph.document.collector import collector_paused
 from rendergraph.document.field_types import MAX_SIZE
 from rendergraph.document.messages import Diagnostic, RenderGraphError
 from rendergraph.document.models import MAX_FRAMES
@@ -22,6 +23,7 @@ ANY_SCENE = SceneFeatures(
 ).full()
 
 
+@collector_paused()
 def expand(
     document: SourceDocument,
     *,

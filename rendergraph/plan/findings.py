@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
 
 from rendergraph.document.messages import Diagnostic, diagnose
+from rendergraph.document.model_errors import MAX_MISTAKES
 from rendergraph.document.models import DocumentModel
+from rendergraph.document.suggest import did_you_mean
 from rendergraph.node.params import Params
 from rendergraph.plan.graph import Position
 
@@ -45,6 +47,12 @@ class Findings:
     def folder(self) -> Path:
         """The graph file's folder, to which every file it names is relative."""
         return self.document.path.resolve().parent
+
+    def suggest(self, word: str, choices: Iterable[str]) -> str:
+        """A help line: what was probably meant. Looks through all choices, so only the first mistakes get one: who
+        misspells a resource that thousands of passes read should not wait for thousands of the same answer.
+        """
+        return did_you_mean(word, choices) if len(self.errors) < MAX_MISTAKES else "check the spelling"
 
     def add(self, code: str, *loc: str | int, key: bool = False, **data: Any) -> None:
         """Record a row of the message table at ``loc``."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import accumulate
 
 from rendergraph.plan.graph import BufferDesc, Graph, Kind, Resource, SubPass
 from rendergraph.plan.plan import Lifetime
@@ -40,12 +41,13 @@ def transients(graph: Graph, lifetimes: Mapping[str, Lifetime]) -> list[str]:
     return [name for name in lifetimes if graph.resources[name].kind is Kind.TRANSIENT]
 
 
-def find_load(graph: Graph, lifetimes: Mapping[str, Lifetime]) -> tuple[int, tuple[str, ...]]:
-    """LOAD: the most bytes of transient resources live at once, which no sharing can get below, and who they are."""
+def find_load(lifetimes: Mapping[str, Lifetime], sizes: Mapping[str, int]) -> tuple[int, tuple[str, ...]]:
+    """LOAD: the most bytes of transient resources (``sizes``, by name) live at once, which no sharing can get below,
+    and who they are.
+    """
     change: dict[int, int] = {}
-    names = transients(graph, lifetimes)
-    for name in names:
-        size, life = storage_bytes(graph.resources[name]), lifetimes[name]
+    for name, size in sizes.items():
+        life = lifetimes[name]
         change[life.first] = change.get(life.first, 0) + size
         change[life.last + 1] = change.get(life.last + 1, 0) - size
     load = now = peak = 0
@@ -53,14 +55,14 @@ def find_load(graph: Graph, lifetimes: Mapping[str, Lifetime]) -> tuple[int, tup
         now += change[position]
         if now > load:
             load, peak = now, position
-    return load, tuple(name for name in names if lifetimes[name].first <= peak <= lifetimes[name].last)
+    return load, tuple(name for name in sizes if lifetimes[name].first <= peak <= lifetimes[name].last)
 
 
 def live_bytes(graph: Graph, lifetimes: Mapping[str, Lifetime], length: int) -> tuple[int, ...]:
     """Bytes of transient resources live at each of ``length`` positions; the most of them is LOAD."""
-    live = [0] * length
+    change = [0] * (length + 1)
     for name in transients(graph, lifetimes):
-        life = lifetimes[name]
-        for position in range(life.first, life.last + 1):
-            live[position] += storage_bytes(graph.resources[name])
-    return tuple(live)
+        size, life = storage_bytes(graph.resources[name]), lifetimes[name]
+        change[life.first] += size
+        change[life.last + 1] -= size
+    return tuple(accumulate(change[:length]))

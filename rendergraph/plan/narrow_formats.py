@@ -23,6 +23,8 @@ def narrow_formats(
     narrowed for.
     """
     found: dict[str, Resource] = {}
+    if not narrowed:
+        return found
     histories = {resource.previous_of for resource in resources.values()}
     uses: dict[str, set[tuple[str, bool, Usage]]] = {}
     for entry in passes.values():

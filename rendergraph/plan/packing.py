@@ -6,7 +6,9 @@ bytes live at once); a few orders and a bounded local search do the rest. TFLite
 
 from __future__ import annotations
 
+import heapq
 import random
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -14,6 +16,10 @@ from dataclasses import dataclass
 EFFORT = 20_000
 #: Above this many pairs that live together, neighbours are not listed and ranges are placed as they come.
 MAX_PAIRS = 400_000
+#: The end of the gap above everything.
+_ENDLESS = 1 << 63
+
+Span = tuple[int, int]  # start and end, in bytes
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +39,16 @@ def pack(blocks: Sequence[Block], bound: int) -> tuple[list[int], int]:
     if not blocks:
         return [], 0
     by_start = sorted(range(len(blocks)), key=lambda i: (blocks[i].first, -blocks[i].bytes, i))
-    neighbours = _neighbours(blocks, by_start)
-    if neighbours is None:
+    by_size = sorted(by_start, key=lambda i: (-blocks[i].bytes, blocks[i].first))
+    if _count_pairs(blocks, by_start) > MAX_PAIRS:
         return _sweep(blocks, by_start)
+    if sum(block.bytes for block in blocks) <= bound:  # all are alive at one time
+        return _stack(blocks, by_size)
+    neighbours = _neighbours(blocks, by_start)
     cost = len(blocks) + sum(map(len, neighbours))
     trials = max(1, EFFORT // cost)
     orders = [
-        sorted(by_start, key=lambda i: (-blocks[i].bytes, blocks[i].first)),
+        by_size,
         by_start,
         sorted(by_start, key=lambda i: -blocks[i].bytes * (1 + blocks[i].last - blocks[i].first)),
         sorted(by_start, key=lambda i: (blocks[i].first - blocks[i].last, -blocks[i].bytes)),
@@ -78,21 +87,27 @@ def _climb(
     return offsets, size
 
 
-def _neighbours(blocks: Sequence[Block], by_start: list[int]) -> list[list[int]] | None:
-    """Per block, those alive at the same time; ``None`` when they are too many to list."""
+def _count_pairs(blocks: Sequence[Block], by_start: list[int]) -> int:
+    """How many pairs of blocks are alive at the same time."""
+    ends = sorted(block.last for block in blocks)
+    return sum(before - bisect_left(ends, blocks[i].first) for before, i in enumerate(by_start))
+
+
+def _neighbours(blocks: Sequence[Block], by_start: list[int]) -> list[list[int]]:
+    """Per block, those alive at the same time."""
     found: list[list[int]] = [[] for _ in blocks]
     active: list[int] = []
-    pairs = 0
+    soonest = -1  # when the first of the active ones ends
     for i in by_start:
         start = blocks[i].first
-        active = [a for a in active if blocks[a].last >= start]
-        pairs += len(active)
-        if pairs > MAX_PAIRS:
-            return None
+        if soonest < start:
+            active = [a for a in active if blocks[a].last >= start]
+            soonest = min((blocks[a].last for a in active), default=_ENDLESS)
         for a in active:
             found[a].append(i)
         found[i].extend(active)
         active.append(i)
+        soonest = min(soonest, blocks[i].last)
     return found
 
 
@@ -100,11 +115,12 @@ def _place(
     blocks: Sequence[Block], order: list[int], neighbours: list[list[int]], best_fit: bool
 ) -> tuple[list[int], int]:
     """Put each block into the lowest gap (or the tightest) that its placed neighbours leave."""
-    offsets = [-1] * len(blocks)
+    offsets = [0] * len(blocks)
+    placed: list[Span | None] = [None] * len(blocks)
     size = 0
     for i in order:
         need = blocks[i].bytes
-        taken = sorted([(offsets[n], offsets[n] + blocks[n].bytes) for n in neighbours[i] if offsets[n] >= 0])
+        taken = sorted(filter(None, map(placed.__getitem__, neighbours[i])))
         end = 0
         chosen, slack = -1, 0
         for low, high in taken:
@@ -115,25 +131,53 @@ def _place(
                     break
             if high > end:
                 end = high
-        offsets[i] = chosen if chosen >= 0 else end
-        size = max(size, offsets[i] + need)
+        offsets[i] = start = chosen if chosen >= 0 else end
+        placed[i] = start, start + need
+        size = max(size, start + need)
     return offsets, size
+
+
+def _stack(blocks: Sequence[Block], order: list[int]) -> tuple[list[int], int]:
+    """One after another: what placing comes to where all overlap."""
+    offsets = [0] * len(blocks)
+    end = 0
+    for i in order:
+        if blocks[i].bytes:
+            offsets[i] = end
+            end += blocks[i].bytes
+    return offsets, end
 
 
 def _sweep(blocks: Sequence[Block], by_start: list[int]) -> tuple[list[int], int]:
-    """First fit in order of first use, with the live ranges kept sorted by offset."""
+    """First fit in order of first use. Only the gaps between live ranges are searched, and the ranges that end are
+    found by a heap: with thousands alive at once, walking them all for each block would be quadratic.
+    """
     offsets = [0] * len(blocks)
     size = 0
-    live: list[tuple[int, int, int]] = []  # offset, end, last use
+    gaps: list[Span] = [(0, _ENDLESS)]
+    leaving: list[tuple[int, int]] = []  # (last use, block)
     for i in by_start:
-        live = [entry for entry in live if entry[2] >= blocks[i].first]
-        end, at = 0, len(live)
-        for k, (low, high, _) in enumerate(live):
-            if low - end >= blocks[i].bytes:
-                at = k
-                break
-            end = high
-        offsets[i] = end
-        live.insert(at, (end, end + blocks[i].bytes, blocks[i].last))
-        size = max(size, end + blocks[i].bytes)
+        need = blocks[i].bytes
+        while leaving and leaving[0][0] < blocks[i].first:
+            gone = heapq.heappop(leaving)[1]
+            _free(gaps, offsets[gone], offsets[gone] + blocks[gone].bytes)
+        if not need:
+            continue
+        at = next(k for k, (low, high) in enumerate(gaps) if high - low >= need)
+        low, high = gaps[at]
+        gaps[at : at + 1] = [(low + need, high)] if low + need < high else []
+        offsets[i] = low
+        size = max(size, low + need)
+        heapq.heappush(leaving, (blocks[i].last, i))
     return offsets, size
+
+
+def _free(gaps: list[Span], low: int, high: int) -> None:
+    """Add a gap, joined with those it touches."""
+    at = bisect_left(gaps, (low, high))
+    first, last = at, at
+    if at and gaps[at - 1][1] == low:
+        first, low = at - 1, gaps[at - 1][0]
+    if at < len(gaps) and gaps[at][0] == high:
+        last, high = at + 1, gaps[at][1]
+    gaps[first:last] = [(low, high)]

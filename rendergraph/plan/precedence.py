@@ -8,13 +8,15 @@ it is already bound to run before one of them.
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.plan.graph import Decision
 from rendergraph.plan.index import LOADS, WRITES, Index
+from rendergraph.plan.reach import Reach
 
 Touch = tuple[int, int]  # sub-pass, LOADS | WRITES
 
@@ -91,44 +93,56 @@ def _sole_definer(groups: dict[int, list[Touch]], writers: list[int]) -> int | N
 
 def _settle(index: Index, followers: list[dict[int, str]], contests: list[_Contest], result: Precedence) -> None:
     """Order the writers of contested cells, round by round: an order found in one may decide another."""
+    if not contests:
+        return
+    reach = Reach(followers, _topological(index, followers), {w for c in contests for w in c.writers})
     told: set[tuple[str, str]] = set()
-    while contests:
-        passes = _topological(index, followers)
-        place = {p: i for i, p in enumerate(passes)}
-        bit = {p: 1 << i for i, p in enumerate(sorted({w for c in contests for w in c.writers}))}
-        reach = _reach(followers, passes, bit)
-        open_contests: list[_Contest] = []
+    undecided = dict(enumerate(contests))
+    by_writer: dict[int, list[int]] = {}
+    for number, contest in enumerate(contests):
+        for writer in contest.writers:
+            by_writer.setdefault(writer, []).append(number)
+    asked = Counter(p for contest in contests for p in contest.groups)
+    due: Iterable[int] = range(len(contests))
+    while due:
         edges: list[tuple[int, int, str]] = []
-        for contest in contests:
-            chain = sorted(contest.writers, key=place.__getitem__)
-            resource = index.resources[index.resource_of[contest.cell]].name
-            if all(reach[a] & bit[b] for a, b in pairwise(chain)):
-                edges += _thread(index, contest, chain, reach, bit, resource, result, told)
-            else:
-                open_contests.append(contest)
-        if not edges:
-            _report(index, open_contests, place, reach, bit, result.errors)
-            return
+        for number in due:
+            contest = contests[number]
+            chain = reach.chain(contest.writers)
+            if chain is not None:
+                edges += _thread(index, contest, chain, reach, result, told)
+                del undecided[number]
+                for p in contest.groups:
+                    asked[p] -= 1
+                    if not asked[p]:
+                        del asked[p]
         for earlier, later, resource in edges:
             followers[earlier].setdefault(later, resource)
-        contests = open_contests
+        if not undecided:
+            return
+        grown = reach.add(followers, [(a, b) for a, b, _ in edges], asked)
+        if reach.in_circle(grown):
+            break
+        due = sorted({number for p in grown for number in by_writer.get(p, ()) if number in undecided})
+    place = {p: i for i, p in enumerate(_topological(index, followers))}
+    _report(index, [*undecided.values()], place, reach, result.errors)
 
 
 def _thread(
     index: Index,
     contest: _Contest,
     chain: list[int],
-    reach: list[int],
-    bit: dict[int, int],
-    resource: str,
+    reach: Reach,
     result: Precedence,
     told: set[tuple[str, str]],
 ) -> list[tuple[int, int, str]]:
     """Place the readers between the ordered writers and write down the cell's sequence; the edges this gives."""
+    resource = index.resources[index.resource_of[contest.cell]].name
     readers: list[list[int]] = [[] for _ in range(len(chain) + 1)]  # readers[i] see the content of chain[i - 1]
+    writers = set(chain)
     for reader in contest.groups:
-        if reader not in contest.writers:
-            place = next((i for i, writer in enumerate(chain) if reach[reader] & bit[writer]), len(chain))
+        if reader not in writers:
+            place = reach.place(reader, chain)
             readers[place].append(reader)
             if place < len(chain) and (key := (resource, index.passes[reader].name)) not in told:
                 told.add(key)
@@ -148,22 +162,8 @@ def _thread(
     return edges
 
 
-def _reach(followers: list[dict[int, str]], passes: list[int], bit: dict[int, int]) -> list[int]:
-    """Per pass, the set of contested writers that must come after it, as bits of an integer."""
-    reach = [0] * len(followers)
-    for p in reversed(passes):
-        for later in followers[p]:
-            reach[p] |= reach[later] | bit.get(later, 0)
-    return reach
-
-
 def _report(
-    index: Index,
-    contests: list[_Contest],
-    place: dict[int, int],
-    reach: list[int],
-    bit: dict[int, int],
-    errors: list[Diagnostic],
+    index: Index, contests: list[_Contest], place: dict[int, int], reach: Reach, errors: list[Diagnostic]
 ) -> None:
     """One error for each pair of writers of a resource that nothing orders."""
     told: set[tuple[int, int, int]] = set()
@@ -172,7 +172,7 @@ def _report(
         resource = index.resource_of[contest.cell]
         for pair in pairwise(chain):
             a, b = sorted(pair)
-            if reach[pair[0]] & bit[pair[1]] or (resource, a, b) in told:
+            if reach(*pair) or (resource, a, b) in told:
                 continue
             told.add((resource, a, b))
             one, two = index.passes[a], index.passes[b]

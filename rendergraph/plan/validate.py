@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from rendergraph.document.collector import collector_paused
 from rendergraph.document.load import Document, load_document
 from rendergraph.document.messages import Diagnostic, RenderGraphError
 from rendergraph.plan.compile import compile_plan
@@ -15,8 +16,9 @@ from rendergraph.scene.source import source_problem
 
 def plan_without_scene(document: Document, options: PlanOptions) -> tuple[Plan, tuple[Diagnostic, ...]]:
     """Plan a document as if its scene held every feature: the largest graph it can become."""
-    graph, warnings = expand(document)
-    plan, more = compile_plan(graph, options)
+    with collector_paused():
+        graph, warnings = expand(document)
+        plan, more = compile_plan(graph, options)
     return plan, (*document.warnings, *warnings, *more)
 
 

@@ -143,13 +143,14 @@ def _uses(plan: Plan) -> tuple[dict[int, list[_Use]], dict[str, int]]:
     mips: dict[str, set[int | None]] = defaultdict(set)
     layers: dict[str, set[int | None]] = defaultdict(set)
     for step in plan.order:
+        rendered = _rendered(step)
         for access in step.accesses:
             name = access.resource
             if name not in homes:
                 homes[name] = _home(plan, name)
             home, age = homes[name]
             copies[home] = max(copies.get(home, 1), age + 1)
-            if access.usage.incoherent or _loops(step, access):
+            if access.usage.incoherent or _loops(rendered, access):
                 hot.add(home)
             mips[home].add(access.mip)
             layers[home].add(access.layer)
@@ -159,12 +160,16 @@ def _uses(plan: Plan) -> tuple[dict[int, list[_Use]], dict[str, int]]:
     for name in plan.graph.outputs:
         home, age = _home(plan, name)
         copies[home] = max(copies.get(home, 1), age + 1)
+    areas: dict[tuple[str, int | None, int | None], tuple[Area, ...]] = {}  # by resource, mip and layer
     for at, step in enumerate(plan.order):
+        rendered = _rendered(step)
         for access in step.accesses:
             home, age = homes[access.resource]
             if home in hot:
-                areas = _areas(plan, access, mips[home], layers[home])
-                use = _Use(home, age, areas, _bit(plan, step, access), access, _loops(step, access))
+                spot = access.resource, access.mip, access.layer
+                if spot not in areas:
+                    areas[spot] = _areas(plan, access, mips[home], layers[home])
+                use = _Use(home, age, areas[spot], _bit(plan, step, access), access, _loops(rendered, access))
                 uses.setdefault(at, []).append(use)
     return uses, {home: copies[home] for home in hot}
 
@@ -180,13 +185,17 @@ def _home(plan: Plan, name: str) -> tuple[str, int]:
     return f"own {name}", age
 
 
-def _loops(step: SubPass, access: Access) -> bool:
+def _rendered(step: SubPass) -> list[Access]:
+    """What a draw renders to."""
+    return [a for a in step.accesses if a.usage is Usage.COLOR or a.usage is Usage.DEPTH]
+
+
+def _loops(rendered: list[Access], access: Access) -> bool:
     """Whether this samples texels that the same draw renders to."""
     if access.usage is not Usage.SAMPLED:
         return False
-    for other in step.accesses:
-        rendering = other.usage is Usage.COLOR or other.usage is Usage.DEPTH
-        if rendering and other.resource == access.resource:
+    for other in rendered:
+        if other.resource == access.resource:
             pairs = (other.mip, access.mip), (other.layer, access.layer)
             if all(None in pair or pair[0] == pair[1] for pair in pairs):
                 return True

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator
+from heapq import heappop, heappush
 
 from rendergraph.document.formats import FORMATS
 from rendergraph.plan.graph import BufferDesc, Kind, TextureDesc
@@ -71,7 +73,8 @@ def _viewable(storage: TextureDesc, view: TextureDesc) -> bool:
 
 
 def _check_heap(plan: Plan, spans: dict[str, Span]) -> Iterator[str]:
-    live: list[tuple[int, int, int, str]] = []  # last use, offset, end, name
+    live: list[tuple[int, int, str]] = []  # offset, end, name: by offset, and apart where no fault was found
+    leaving: list[tuple[int, tuple[int, int, str]]] = []  # by last use
     for name in sorted(plan.buffer_of, key=lambda n: spans.get(n, (-1, -1))):
         place, desc = plan.buffer_of[name], plan.graph.resources[name].desc
         if name not in spans or not isinstance(desc, BufferDesc):
@@ -80,11 +83,15 @@ def _check_heap(plan: Plan, spans: dict[str, Span]) -> Iterator[str]:
         start, end = place.offset, place.offset + place.bytes
         if start % 256 or start < 0 or end > plan.heap_bytes or place.bytes != desc.bytes:
             yield f"memory: {name} does not fit its place in the heap"
-        live = [entry for entry in live if entry[0] >= spans[name][0]]
-        for _, low, high, other in live:
+        while leaving and leaving[0][0] < spans[name][0]:
+            del live[bisect_left(live, heappop(leaving)[1])]
+        entry = start, end, name
+        at = bisect_left(live, entry)
+        for low, high, other in live[max(0, at - 1) : at + 1]:
             if low < end and start < high:
                 yield f"memory: {name} and {other} overlap in the heap while both are live"
-        live.append((spans[name][1], start, end, name))
+        live.insert(at, entry)
+        heappush(leaving, (spans[name][1], entry))
 
 
 def _check_sums(plan: Plan, spans: dict[str, Span]) -> Iterator[str]:

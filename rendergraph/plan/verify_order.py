@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from itertools import pairwise
 
 from rendergraph.plan.graph import Graph, Kind
 from rendergraph.plan.plan import Plan
-from rendergraph.plan.verify_users import Reach, Spot, Users, find_users
+from rendergraph.plan.verify_reach import Reach
+from rendergraph.plan.verify_users import Spot, Users, find_users
 
 
 def check_order(plan: Plan) -> list[str]:
@@ -122,17 +123,27 @@ def _check_between(spot: Spot, users: Users, reach: Reach) -> Iterator[str]:
 def _check_culled(spot: Spot, users: Users, reach: Reach, wanted: bool) -> Iterator[str]:
     """Whoever runs finds the content of a writer that was left out replaced before it looks."""
     writers = [name for name, user in users.items() if user.writes]
-    for gone in writers:
-        if users[gone].leaves:
-            continue
-        fresh = [name for name in writers if name != gone and users[name].replaces and reach(gone, name)]
-        if wanted and not fresh:
-            yield f"culled: the last word of {gone} on {spot[0]}, which outlives the frame"
-        for name, user in users.items():
-            if name == gone or not user.borrows or (len(writers) > 1 and reach(name, gone)):
-                continue
-            if all(other == name or reach(name, other) for other in fresh):
-                yield f"culled: what {gone} writes to {spot[0]}, which {name} loads"
+    gone = [name for name in writers if not users[name].leaves]
+    if not gone:
+        return
+    if len(writers) > 1 and spot not in reach.chains:
+        yield f"culled: {gone[0]}, though nothing orders the writers of {spot[0]}"
+        return
+    chain = reach.chains.get(spot, writers)
+    place = {name: at for at, name in enumerate(chain)}  # who borrows at a place sees what was left before it
+    borrowers = sorted(
+        (place[name] if user.writes else reach.place(name, chain) if len(chain) > 1 else 1, name)
+        for name, user in users.items()
+        if user.borrows
+    )
+    replaced = [at for at, name in enumerate(chain) if users[name].replaces]
+    for name in gone:
+        next_one = bisect_right(replaced, place[name])
+        end = replaced[next_one] if next_one < len(replaced) else len(chain)
+        if wanted and end == len(chain):
+            yield f"culled: the last word of {name} on {spot[0]}, which outlives the frame"
+        for at in range(bisect_left(borrowers, (place[name] + 1,)), bisect_left(borrowers, (end + 1,))):
+            yield f"culled: what {name} writes to {spot[0]}, which {borrowers[at][1]} loads"
 
 
 def _check_defined(plan: Plan) -> Iterator[str]:

@@ -10,12 +10,14 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from rendergraph.report.bound_text import bound_text
+
 
 def bench_tables(record: dict[str, Any]) -> Iterator[RenderableType]:
     """Times, then bounds where they were asked for."""
     yield _times(record)
     for name, bound in record["bound"].items():
-        yield _bound(name, bound)
+        yield Text(bound_text(name, bound))
 
 
 def _times(record: dict[str, Any]) -> RenderableType:
@@ -48,23 +50,3 @@ def _median(blocks: list[dict[str, Any]], side: str, name: str | None) -> float 
     runs = [block[side]["frame_ms"] if name is None else block[side]["passes"].get(name, []) for block in blocks]
     samples = [value for run in runs for value in run]
     return median(samples) if samples else None
-
-
-def _bound(side: str, bound: dict[str, Any]) -> RenderableType:
-    evidence = bound["evidence"]
-    agree = f"{100 * bound['agreement']:.0f} % of rounds agree"
-    lines = [f"{side} is bound by {bound['class']} ({agree}): {bound['advice']}"]
-    kept = {
-        "half resolution": evidence["half_resolution"],
-        "nothing rasterised": evidence["nothing_rasterised"],
-        "no draws": evidence["no_draws"],
-        "no readback": evidence["no_readback"],
-    }
-    left = ", ".join(f"{name} {100 * value:.0f} %" for name, value in kept.items() if value is not None)
-    lines.append(f"  of the frame is left: {left}")
-    share = f"  handing over takes {100 * evidence['submit_share']:.0f} %, waiting for readbacks "
-    share += f"{100 * evidence['readback_share']:.0f} %; {evidence['draws']} draws"
-    if evidence["primitives_per_draw"] is not None:
-        share += f" of {evidence['primitives_per_draw']:.0f} primitives"
-    lines.append(share)
-    return Text("\n".join(lines))

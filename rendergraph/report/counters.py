@@ -1,4 +1,4 @@
-"""Counters of passes for the records: what was asked of the device, what it counted, and bytes a second."""
+"""What the device was asked for and what it said, for the records: counters, statistics, bytes a second, warnings."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any, Final
 
+from rendergraph.document.messages import Diagnostic
 from rendergraph.run.result import StepCounters
 
 _COUNTS: Final = tuple(f.name for f in fields(StepCounters) if f.name not in ("name", "statistics"))
@@ -33,6 +34,15 @@ def gigabytes_per_second(steps: Sequence[StepCounters], median_ms: float | None)
     if not median_ms or not steps:
         return None
     return round(sum(s.bytes_read + s.bytes_written for s in steps) / median_ms / 1e6, 6)
+
+
+def driver_warnings(found: Sequence[Diagnostic]) -> list[dict[str, Any]]:
+    """What the driver warned of (RG507) among a run's warnings: its words, the sub-pass and resource where known."""
+    return [
+        {"text": w.data["detail"], "subpass": w.data["scope"], "resource": w.data["resource"]}
+        for w in found
+        if w.code == "RG507"
+    ]
 
 
 def statistics_source(steps: Sequence[StepCounters], renderer: str) -> dict[str, Any]:

@@ -14,15 +14,9 @@ from rendergraph.measure.statistics import (
     compare_blocks,
     compare_runs,
 )
+from rendergraph.report.diff_counts import common_steps, compare_bounds, compare_counts, compare_passes
 from rendergraph.report.diff_errors import compare_errors
-from rendergraph.report.diff_exact import (
-    Direction,
-    ExactChange,
-    compare_counts,
-    compare_passes,
-    compare_resources,
-    worst_first,
-)
+from rendergraph.report.diff_exact import Direction, ExactChange, compare_resources, worst_first
 from rendergraph.report.diff_images import TOLERANCE, ImageChange, compare_image_files
 from rendergraph.report.diff_names import Matching, match_passes
 from rendergraph.report.read_records import Record, Times, read_pair, read_record
@@ -44,7 +38,7 @@ class DiffOptions:
 
 @dataclass(frozen=True, slots=True)
 class TimeChange:
-    """The time of a pass, or of the whole frame (name ``FRAME``), before and after."""
+    """The time of a pass, a sub-pass (``pass.step``), or the whole frame (name ``FRAME``), before and after."""
 
     name: str
     node: str
@@ -106,7 +100,7 @@ def compare_records(a: Record, b: Record, options: DiffOptions, *, paired: bool 
     names = Matching({}, (), ())
     if a.times and b.times:
         names = match_passes(_nodes(a.times), _nodes(b.times))
-        exact += [*compare_passes(names), *compare_counts(a.times, b.times, names)]
+        exact += [*compare_passes(names), *compare_counts(a.times, b.times, names), *compare_bounds(a.times, b.times)]
         times = _compare_times(a.times, b.times, names, options.thresholds, paired=paired)
         warnings += _too_few(times, paired=paired)
     if a.resources and b.resources:
@@ -181,10 +175,14 @@ def _judged_nodes(record: AccuracyRecord) -> dict[str, str]:
 
 
 def _compare_times(a: Times, b: Times, names: Matching, thresholds: Thresholds, *, paired: bool) -> list[TimeChange]:
+    """All in one family of tests: a pass and its sub-passes are several chances of one false alarm."""
+    steps = common_steps(a, b, names)
     before = {FRAME: a.frame, **{names.after_name(name): entry.runs for name, entry in a.passes.items()}}
+    before |= {after: a.steps[name].runs for name, after in steps.items()}
     after = {FRAME: b.frame, **{name: entry.runs for name, entry in b.passes.items()}}
+    after |= {name: b.steps[name].runs for name in steps.values()}
     changes = (compare_blocks if paired else compare_runs)(before, after, thresholds)
-    nodes = {FRAME: "", **_nodes(b)}
+    nodes = {FRAME: "", **_nodes(b), **{name: b.steps[name].node for name in steps.values()}}
     return [TimeChange(name, nodes[name], change) for name, change in changes.items()]
 
 
@@ -195,7 +193,7 @@ def _too_few(times: list[TimeChange], *, paired: bool) -> list[Diagnostic]:
         return []
     least = min(entry.change.compared for entry in few)
     what = "everything" if len(few) == len(times) else ", ".join(entry.name or "the whole frame" for entry in few)
-    unit = "paired blocks" if paired else "samples"
+    unit = ("paired block" if paired else "sample") + ("s" if least != 1 else "")
     return [diagnose("RG738", name=what, samples=least, unit=unit, least=LEAST_COMPARED)]
 
 

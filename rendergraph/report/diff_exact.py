@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from enum import StrEnum
 from typing import Any, Final
 
 from rendergraph.report.diff_names import Matching
-from rendergraph.report.read_records import Times
 from rendergraph.report.record_models import TOTALS, BarrierModel, DescModel, ResourceModel, ResourcesRecord
 
 
@@ -25,8 +24,8 @@ class Direction(StrEnum):
 class ExactChange:
     """One exact difference. ``before`` and ``after`` are JSON-ready; ``text`` says it in words.
 
-    ``kind``: error, total, resource, sharing, lifetime, slots, barrier, order, subpass, pass, culled, counter or
-    steady_state.
+    ``kind``: error, total, resource, sharing, lifetime, slots, barrier, order, subpass, pass, culled, counter,
+    steady_state or bound (told from measurements, but one of four classes).
     """
 
     kind: str
@@ -46,7 +45,8 @@ class ExactChange:
 
 #: Kinds from the most to the least telling.
 KINDS: Final = (
-    "error", "total", "resource", "barrier", "counter", "steady_state", "culled", "pass", "subpass", "order", "slots",
+    "error", "total", "resource", "barrier", "counter", "steady_state", "bound", "culled", "pass", "subpass", "order",
+    "slots",
     "sharing", "lifetime",
 )  # fmt: skip
 _DIRECTIONS: Final = (Direction.WORSE, Direction.CHANGED, Direction.BETTER)
@@ -58,12 +58,12 @@ def worst_first(change: ExactChange) -> tuple[int, int, float, str]:
 
 
 def compare_resources(a: ResourcesRecord, b: ResourcesRecord, names: Matching) -> Iterator[ExactChange]:
-    """Everything exact in two resources records; see :func:`compare_counts` for what timing records hold."""
+    """Everything exact in two resources records; :mod:`rendergraph.report.diff_counts` for what timing records hold."""
     for total in TOTALS:
         before, after = a.totals[total], b.totals[total]
         if before != after:  # what is really allocated decides; the others are what might have been
             direction = _spent(before, after) if total == "used" else Direction.CHANGED
-            yield _amount("total", total, before, after, f"transient bytes, {total}", direction)
+            yield amount("total", total, before, after, f"transient bytes, {total}", direction)
     old = {names.after_name(r.name): r for r in a.resources}
     new = {r.name: r for r in b.resources}
     for name in old.keys() - new.keys():
@@ -74,39 +74,11 @@ def compare_resources(a: ResourcesRecord, b: ResourcesRecord, names: Matching) -
     for name in old.keys() & new.keys():
         yield from _compare_resource(name, old[name], new[name], names)
     if len(a.slots) != len(b.slots):
-        yield _amount("slots", "slots", len(a.slots), len(b.slots), "texture slots", Direction.CHANGED)
+        yield amount("slots", "slots", len(a.slots), len(b.slots), "texture slots", Direction.CHANGED)
     yield from _compare_sharing(a, b, names)
     yield from _compare_barriers(a, b, names)
     yield from _compare_order([names.after_name(n) for n in a.order], b.order, names)
     yield from _compare_culled({names.after_name(n) for n in a.culled}, set(b.culled), b.order)
-
-
-def compare_counts(a: Times, b: Times, names: Matching) -> Iterator[ExactChange]:
-    """Draws, dispatches, bytes touched and the like a pass, and what a steady frame must not create."""
-    for name, entry in a.passes.items():
-        other = b.passes.get(names.after_name(name))
-        if other is not None:
-            if entry.node != other.node:
-                what = f"pass {names.after_name(name)} is a {other.node} now, before a {entry.node}"
-                yield ExactChange("pass", names.after_name(name), Direction.CHANGED, entry.node, other.node, what)
-            yield from _compare_counters(names.after_name(name), entry.counters, other.counters)
-    if names.only_before or names.only_after:
-        yield from _compare_counters("whole frame", _summed(a), _summed(b))
-    for name in a.steady.keys() & b.steady.keys():
-        if a.steady[name] != b.steady[name]:
-            text = f"{_words(name)} after the first frame"
-            yield _amount("steady_state", name, a.steady[name], b.steady[name], text)
-
-
-def compare_passes(names: Matching) -> Iterator[ExactChange]:
-    """Passes on one side only, and those that were renamed."""
-    for before, after in names.renamed.items():
-        text = f"pass {before} is now {after} (the same node in the same place): compared as one"
-        yield ExactChange("pass", after, Direction.CHANGED, before, after, text)
-    for name in names.only_before:
-        yield ExactChange("pass", name, Direction.CHANGED, name, None, f"pass {name} ran only before")
-    for name in names.only_after:
-        yield ExactChange("pass", name, Direction.CHANGED, None, name, f"pass {name} runs only after")
 
 
 # ---- parts
@@ -116,16 +88,13 @@ def _spent(before: float, after: float) -> Direction:
     return Direction.WORSE if after > before else Direction.BETTER
 
 
-def _amount(
+def amount(
     kind: str, subject: str, before: int, after: int, what: str, direction: Direction | None = None
 ) -> ExactChange:
+    """A change of a number; more of it is worse unless ``direction`` says otherwise."""
     share = f" ({100 * (after - before) / before:+.1f} %)" if before else ""
     text = f"{what}: {before} -> {after}{share}"
     return ExactChange(kind, subject, direction or _spent(before, after), before, after, text)
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
 
 
 def _shape(desc: DescModel) -> str:
@@ -224,17 +193,3 @@ def _compare_culled(a: set[str], b: set[str], order: list[str]) -> Iterator[Exac
             )
     for name in sorted(b - a):
         yield ExactChange("culled", name, Direction.CHANGED, False, True, f"sub-pass {name} is culled now")
-
-
-def _compare_counters(subject: str, a: Mapping[str, int], b: Mapping[str, int]) -> Iterator[ExactChange]:
-    for name in [n for n in a if n in b]:
-        if a[name] != b[name]:
-            yield _amount("counter", f"{subject}.{name}", a[name], b[name], f"{subject}: {_words(name)}")
-
-
-def _summed(times: Times) -> dict[str, int]:
-    totals: dict[str, int] = {}
-    for entry in times.passes.values():
-        for name, value in entry.counters.items():
-            totals[name] = totals.get(name, 0) + value
-    return totals

@@ -32,7 +32,7 @@ def diff_annotations(comparison: Comparison, gate: str) -> str:
     warnings = [found.text for found in comparison.warnings] + [sentence(found) for found in tolerated]
     lines += _commands("warning", "not gated", warnings)
     lines += _commands("notice", "inconclusive", unknown)
-    lines.append(_command("notice", "rg diff", summary(comparison, gate)) if not failed else "")
+    lines.append(_command("notice", "outcome", summary(comparison, gate)) if not failed else "")
     return "\n".join(line for line in lines if line)
 
 

@@ -54,7 +54,7 @@ def why(entry: TimeChange) -> str:
 def time_sentence(entry: TimeChange) -> str:
     """``pass light is slower: 1.200 -> 1.500 ms, +0.300 ms (+25.0 %), interval +0.280 .. +0.320 ms``."""
     change, name = entry.change, pass_label(entry)
-    subject = f"pass {name}" if entry.name else name
+    subject = f"{'sub-pass' if '.' in entry.name else 'pass'} {name}" if entry.name else name
     if change.before is None or change.after is None or change.shift is None:
         return f"{subject}: {change.verdict.value}, {why(entry)}"
     text = f"{subject} is {change.verdict.value}: {change.before:.3f} -> {change.after:.3f} ms"
@@ -96,7 +96,8 @@ def summary(comparison: Comparison, gate: str) -> str:
     """The last line: how many of what, and whether the gate holds."""
     failed = len(comparison.regressions(gate))
     counts = {verdict: sum(e.change.verdict is verdict for e in comparison.times) for verdict in Verdict}
-    parts = [f"{len(comparison.exact)} exact differences"] if "exact" in comparison.compared else []
+    exact = len(comparison.exact)
+    parts = [f"{exact} exact difference{'s' if exact != 1 else ''}"] if "exact" in comparison.compared else []
     if "time" in comparison.compared:
         parts.append("times: " + ", ".join(f"{count} {verdict.value}" for verdict, count in counts.items() if count))
     if "images" in comparison.compared:

@@ -37,7 +37,7 @@ from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.document.output_files import IMAGE_SUFFIXES
 from rendergraph.measure.run_shift import Runs
 from rendergraph.report.record_files import RENDER_HINT, read_record_file, unreadable
-from rendergraph.report.record_models import AccuracyRecord, BenchRecord, ResourcesRecord, TimingRecord
+from rendergraph.report.record_models import AccuracyRecord, BenchRecord, BoundModel, ResourcesRecord, TimingRecord
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -55,13 +55,16 @@ class PassTimes:
 class Times:
     """Times of one side. ``setup`` is what must be equal to compare them: clock, renderer, driver, cpu, threads, size.
 
-    ``passes`` are in execution order; runs of all are parallel.
+    ``passes`` are in execution order, and so are ``steps``, their sub-passes (``pass.step``); runs of all are
+    parallel. ``bound`` is what the frame is bound by, where that was asked.
     """
 
     setup: dict[str, str]
     frame: Runs
     passes: dict[str, PassTimes]
     steady: dict[str, int]
+    steps: dict[str, PassTimes] = field(default_factory=dict)
+    bound: BoundModel | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +178,13 @@ def _stored_times(record: TimingRecord) -> Times:
         entry.name: PassTimes(entry.node, _counters(entry.counters), _runs([(0, entry.ms.samples)]))
         for entry in record.passes
     }
-    return Times(_setup(record), _runs([(0, record.frame_ms.samples)]), passes, record.steady_state)
+    steps = {
+        step.name: PassTimes(entry.node, _counters(step.counters), _runs([(0, step.ms.samples)]))
+        for entry in record.passes
+        for step in entry.subpasses
+    }
+    frame = _runs([(0, record.frame_ms.samples)])
+    return Times(_setup(record), frame, passes, record.steady_state, steps, record.bound)
 
 
 def _bench_side(place: str, bench: BenchRecord, name: str) -> Record:
@@ -193,8 +202,18 @@ def _bench_side(place: str, bench: BenchRecord, name: str) -> Record:
         )
         for entry in side.passes
     }
+    steps = {
+        step.name: PassTimes(
+            entry.node,
+            _counters(step.counters),
+            _runs([(process, block.subpasses.get(step.name, [])) for process, block in kept]),
+        )
+        for entry in side.passes
+        for step in entry.subpasses
+    }
     frame = _runs([(process, block.frame_ms) for process, block in kept])
-    return Record(place, Times(_setup(side), frame, passes, side.steady_state), side.resources)
+    times = Times(_setup(side), frame, passes, side.steady_state, steps, bench.bound.get(name))
+    return Record(place, times, side.resources)
 
 
 def _runs(runs: list[tuple[int, list[float]]]) -> Runs:

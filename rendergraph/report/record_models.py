@@ -46,13 +46,26 @@ class DeviceModel(_Part):
     threads: int | None = None
 
 
-class PassModel(_Part):
-    """A pass with its times and exact counts; ``None`` for a count that only the device knows."""
+class StepModel(_Part):
+    """A sub-pass with its times and exact counts; ``None`` for a count that only the device knows."""
 
     name: Label
-    node: Label = ""
     ms: SampledModel = SampledModel()
     counters: dict[Label, Count | None] = {}
+
+
+class PassModel(StepModel):
+    """A pass, the same of all its sub-passes together."""
+
+    node: Label = ""
+    subpasses: list[StepModel] = []
+
+
+class BoundModel(_Part):
+    """What a frame is bound by, and the share of rounds that alone say so."""
+
+    bound_by: Label = Field(alias="class")
+    agreement: Annotated[float, Field(ge=0, le=1)]
 
 
 class DescModel(_Part):
@@ -138,10 +151,12 @@ class TimingRecord(_Part):
     passes: list[PassModel]
     steady_state: dict[Label, Count] = {}
     resources: ResourcesRecord | None = None
+    bound: BoundModel | None = None
 
     @model_validator(mode="after")
     def _no_twins(self) -> TimingRecord:
         _refuse_twins([entry.name for entry in self.passes])
+        _refuse_twins([step.name for entry in self.passes for step in entry.subpasses])
         return self
 
 
@@ -195,10 +210,11 @@ class AccuracyRecord(_Part):
 
 
 class BlockSideModel(_Part):
-    """Consecutive frames of one side: whole frames, and each pass."""
+    """Consecutive frames of one side: whole frames, each pass and each sub-pass."""
 
     frame_ms: Samples = []
     passes: dict[Label, Samples] = {}
+    subpasses: dict[Label, Samples] = {}
 
 
 class BlockModel(_Part):
@@ -214,6 +230,7 @@ class BenchRecord(_Part):
 
     sides: dict[str, TimingRecord]
     blocks: list[BlockModel]
+    bound: dict[str, BoundModel] = {}
 
     @model_validator(mode="after")
     def _sides_fit(self) -> BenchRecord:
@@ -224,7 +241,9 @@ class BenchRecord(_Part):
                 raise mistake(f"block {number} does not have the sides of the file", "write the record again")
             for name in self.sides:
                 side: BlockSideModel = getattr(block, name)
-                strangers = set(side.passes) - {entry.name for entry in self.sides[name].passes}
+                passes = self.sides[name].passes
+                strangers = set(side.passes) - {entry.name for entry in passes}
+                strangers |= set(side.subpasses) - {step.name for entry in passes for step in entry.subpasses}
                 if strangers:
                     raise mistake(f"block {number} times '{min(strangers)}', no pass of side {name}", "measure again")
         return self

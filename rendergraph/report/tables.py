@@ -8,6 +8,8 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from rendergraph.report.bound_text import bound_text
+
 _BAR = 24
 _CHART = 40
 
@@ -27,6 +29,8 @@ def timing_table(record: dict[str, Any]) -> RenderableType:
         f"upload {once['upload']:.0f}, first frame {once['first_frame']:.0f} ms",
         f"{device['renderer']}, {record['size'][0]}x{record['size'][1]}, {record['timed_frames']} timed frames",
     ]
+    if record["bound"] is not None:
+        notes.append(bound_text("the frame", record["bound"]))
     if frame["median"] is None:
         return Text("\n".join(notes), style="dim")
     medians = [p["ms"]["median"] or 0.0 for p in record["passes"]]

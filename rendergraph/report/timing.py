@@ -14,7 +14,13 @@ from typing import Any
 import rendergraph
 from rendergraph.plan.graph import SubPass
 from rendergraph.plan.plan import Plan
-from rendergraph.report.counters import add_counters, add_statistics, gigabytes_per_second, statistics_source
+from rendergraph.report.counters import (
+    add_counters,
+    add_statistics,
+    driver_warnings,
+    gigabytes_per_second,
+    statistics_source,
+)
 from rendergraph.run.result import DeviceFacts, FrameResult, StepCounters, StepTimes
 
 SCHEMA = "rendergraph.timing/1"
@@ -33,8 +39,10 @@ def spread(samples: Sequence[int]) -> dict[str, Any]:
     return {"median": round(median(values), 6), "min": min(values), "max": max(values), "samples": values}
 
 
-def timing_record(result: FrameResult, title: str = "") -> dict[str, Any]:
-    """The record as JSON-ready data; times in milliseconds, a pass's the sum of its sub-passes', frame by frame."""
+def timing_record(result: FrameResult, title: str = "", bound: dict[str, Any] | None = None) -> dict[str, Any]:
+    """The record as JSON-ready data; times in milliseconds, a pass's the sum of its sub-passes', frame by frame.
+    ``bound`` is what :func:`rendergraph.measure.perturb.perturb_document` found.
+    """
     graph, times = result.plan.graph, result.times
     return {
         "schema": SCHEMA,
@@ -62,6 +70,8 @@ def timing_record(result: FrameResult, title: str = "") -> dict[str, Any]:
             "programs_compiled": result.steady.programs_compiled,
             "bytes_uploaded": result.steady.bytes_uploaded,
         },
+        "bound": bound,
+        "driver_warnings": driver_warnings(result.warnings),
         **switches_record(result),
     }
 

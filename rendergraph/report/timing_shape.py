@@ -6,7 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from rendergraph.report.record_shape import Bytes, Count, Head, Milliseconds, Part
+from rendergraph.report.record_shape import Bytes, Count, Head, Milliseconds, Part, Share
+
+Ratio = Annotated[float, Field(ge=0)]
 
 
 class SpreadRecord(Part):
@@ -109,6 +111,75 @@ class SwitchRecord(Part):
     history_cleared: list[str] = Field(description="Histories that it did not have: they start from zeros.")
 
 
+class RoundRecord(Part):
+    """A round of perturbed frames handed over back to back, a frame."""
+
+    frame_ms: Milliseconds
+    submit_ms: Milliseconds = Field(description="Until everything was handed over, waits for readbacks included.")
+    submit_cpu_ms: Milliseconds = Field(description="Of the submitting thread.")
+    process_cpu_ms: Milliseconds = Field(description="Of all threads.")
+    readback_ms: Milliseconds
+    readback_cpu_ms: Milliseconds
+
+
+class EvidenceRecord(Part):
+    """What a bound is told from: shares of the frame, and what is left of it under each perturbation (1: all)."""
+
+    submit_share: Ratio
+    readback_share: Ratio
+    half_resolution: Ratio | None = Field(description="null where the graph has no plan at half its size.")
+    nothing_rasterised: Ratio
+    no_draws: Ratio
+    no_readback: Ratio | None = Field(description="null where nothing is read back.")
+    draws: Count
+    primitives_per_draw: Ratio | None
+    readback_bytes: Bytes
+
+
+class ThresholdsRecord(Part):
+    """Where the classes part: shares of the frame, and primitives a draw."""
+
+    waiting: Ratio
+    recovered: Ratio
+    calling: Ratio
+    submitting: Ratio
+    small_draw: Ratio
+    drawing: Ratio
+    pixels: Ratio
+
+
+Rounds = Annotated[list[RoundRecord], Field(min_length=1)]
+
+
+class RunsRecord(Part):
+    """Every round, by what was left out; absent where that cannot be."""
+
+    base: Rounds
+    nothing_rasterised: Rounds
+    no_draws: Rounds
+    half_resolution: Rounds = Field(default=[], description="Absent where the graph has no plan at half its size.")
+    no_readback: Rounds = Field(default=[], description="Absent where nothing is read back.")
+
+
+class BoundRecord(Part):
+    """What the frame is bound by: the class by the rounds' medians, what it was told from, and every round."""
+
+    bound_by: Literal["sync", "draw_calls", "gpu", "cpu"] = Field(alias="class")
+    agreement: Share = Field(description="Of the rounds that alone say the same.")
+    advice: str
+    evidence: EvidenceRecord
+    thresholds: ThresholdsRecord
+    runs: RunsRecord
+
+
+class DriverWarningRecord(Part):
+    """Undefined behaviour that the driver noticed."""
+
+    text: str
+    subpass: str = Field(description="Empty where it came outside of one.")
+    resource: str = Field(description="Empty where it is not known.")
+
+
 class TimingRecord(Head):
     """The times of a run, with their clock, renderer and raw samples."""
 
@@ -124,4 +195,6 @@ class TimingRecord(Head):
     statistics: StatisticsRecord
     passes: list[PassRecord] = Field(description="In execution order.")
     steady_state: SteadyRecord
+    bound: BoundRecord | None = Field(description="null unless perturbed runs were asked for.")
+    driver_warnings: list[DriverWarningRecord] = Field(description="Each once.")
     switches: list[SwitchRecord] = Field(default=[], description="Where the scene changed; absent where it did not.")

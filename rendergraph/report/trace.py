@@ -20,7 +20,9 @@ from rendergraph.plan.plan import Plan
 from rendergraph.run.result import FrameResult, StepTimes
 
 _FRAME, _RESOURCES = 1, 2  # processes
-_DEVICE, _HOST = 1, 2  # threads of the frame
+# Threads of the frame, and the first of the resources: none numbered as its process, which makes a main thread of it
+# that Perfetto marks and moves to the front.
+_DEVICE, _HOST, _FIRST_RESOURCE = 11, 12, 101
 
 #: Start and end of something, in nanoseconds since the trace began.
 Span = tuple[int, int]
@@ -99,7 +101,7 @@ def _names(plan: Plan, title: str) -> Iterator[dict[str, Any]]:
 def _threads(plan: Plan) -> dict[str, int]:
     """A thread a resource, by first use."""
     by_use = sorted(plan.lifetimes, key=lambda name: (plan.lifetimes[name].first, plan.lifetimes[name].last, name))
-    return {name: number for number, name in enumerate(by_use, 1)}
+    return {name: number for number, name in enumerate(by_use, _FIRST_RESOURCE)}
 
 
 def _track(
@@ -148,10 +150,12 @@ def _facts(plan: Plan, resource: Resource) -> dict[str, Any]:
 
 
 def _counter(plan: Plan, spans: Sequence[Span]) -> Iterator[dict[str, Any]]:
-    """Bytes of live transient resources, from each sub-pass's start on; none between frames."""
+    """Bytes of live transient resources, from each sub-pass's start on; none between frames. Viewers call the track by
+    the counter's name and its argument's: "live transient bytes".
+    """
     live = live_bytes(plan.graph, plan.lifetimes, len(plan.order))
     moments = [(start, count) for (start, _), count in zip(spans, live, strict=True)]
     for moment, count in [*moments, (_hull(spans)[1], 0)]:
         yield {
-            "ph": "C", "name": "live transient bytes", "pid": _FRAME, "ts": moment / 1e3, "args": {"bytes": count},
+            "ph": "C", "name": "live transient", "pid": _FRAME, "ts": moment / 1e3, "args": {"bytes": count},
         }  # fmt: skip

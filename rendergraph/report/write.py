@@ -48,10 +48,12 @@ def write_result(
     full: bool = False,
     judged: Sequence[PassAccuracy] | None = None,
     errors: ErrorGallery | None = None,
+    bound: dict[str, Any] | None = None,
 ) -> WrittenResult:
     """Write outputs, captures, ``timing.json`` and ``resources.json``, with ``judged`` (passes held against their
     references) ``accuracy.json``, with ``page`` (the targets it shows; ``errors`` the error maps) ``report.html``, and
     with ``trace`` ``trace.json``. Each file is whole or absent. ``full``: the graph was not specialised on its scene.
+    ``bound``: what perturbed runs found, for the timing record.
     """
     files = []
     for name, file in result.files.items():
@@ -60,7 +62,7 @@ def write_result(
         files.append(folder / file)
     for name, pixels in result.captures.items():
         files += write_capture(folder, result.plan.graph.resources[name], pixels)
-    timing = timing_record(result, document.model.title)
+    timing = timing_record(result, document.model.title, bound)
     watched = result.frames - 1 + result.times.warm_up
     resources = resources_record(
         result.plan,

@@ -8,11 +8,12 @@ from rendergraph.device import enums
 from rendergraph.device.buffers import Buffer
 from rendergraph.device.context import Device
 from rendergraph.device.programs import LinkedProgram
+from rendergraph.device.reflection import Unit
 from rendergraph.device.samplers import sampler
 from rendergraph.device.textures import Texture, create_view, level_size
 from rendergraph.document.formats import FORMATS
 from rendergraph.document.messages import RenderGraphError, diagnose
-from rendergraph.plan.graph import Access, SubPass, Target, TextureDesc, Usage
+from rendergraph.plan.graph import Access, DrawScene, SubPass, Target, TextureDesc, Usage
 from rendergraph.plan.plan import Plan
 from rendergraph.run.allocation import Allocation
 from rendergraph.run.geometry import SceneGeometry
@@ -27,6 +28,7 @@ _IMAGE_ACCESS = {
     Usage.IMAGE_WRITE: enums.WRITE_ONLY,
     Usage.IMAGE_UPDATE: enums.READ_WRITE,
 }
+#: In draws of the scene, a sampler for each slot of ``Material.textures``: a batch binds the arrays its materials use.
 SCENE_TEXTURES = "u_textures"
 
 
@@ -58,25 +60,21 @@ class Bindings:
         """
         named = {a.name: a for a in subpass.accesses if a.name is not None}
         for name, sampled in program.samplers.items():
-            if name == SCENE_TEXTURES and self._geometry is not None:
-                self._scene_textures(sampled.unit)
+            if name == SCENE_TEXTURES and isinstance(subpass.work, DrawScene):
+                self._scene_textures(sampled)
             else:
                 self._sample(sampled.unit, self._of(named, name, "sampler", subpass))
         for name, image in program.images.items():
             self._image(image.unit, self._of(named, name, "image", subpass))
         for name, block in program.storage_blocks.items():
-            if name == "Lights" and self._geometry is not None and self._geometry.lights_move:
-                self._recorder.forget((enums.SHADER_STORAGE_BUFFER, block.binding))
-                self._recorder.call(self._geometry.bind_lights, block.binding)
-                continue
-            scene = self._geometry.blocks.get(name) if self._geometry is not None else None
-            buffer = scene if scene is not None else self._buffer(self._of(named, name, "storage block", subpass))
-            self._range(enums.SHADER_STORAGE_BUFFER, block.binding, buffer)
+            if not self._scene_block(enums.SHADER_STORAGE_BUFFER, block.binding, name):
+                buffer = self._buffer(self._of(named, name, "storage block", subpass))
+                self._range(enums.SHADER_STORAGE_BUFFER, block.binding, buffer)
         for name, block in program.uniform_blocks.items():
             if name == "Frame":
                 index = self._device.gl.glGetProgramResourceIndex(program.glo, enums.UNIFORM_BLOCK, b"Frame")
                 self._device.gl.glUniformBlockBinding(program.glo, index, FRAME_BINDING)
-            else:
+            elif not self._scene_block(enums.UNIFORM_BUFFER, block.binding, name):
                 buffer = self._buffer(self._of(named, name, "uniform block", subpass))
                 self._range(enums.UNIFORM_BUFFER, block.binding, buffer)
 
@@ -98,11 +96,24 @@ class Bindings:
             target, binding, buffer.glo, buffer.offset, buffer.bytes,
         )  # fmt: skip
 
-    def _scene_textures(self, first_unit: int) -> None:
+    def _scene_block(self, target: int, binding: int, name: str) -> bool:
+        """Bind one of the scene's own blocks, storage or uniform; false where it has none of this name."""
+        if self._geometry is None or name not in self._geometry.blocks:
+            return False
+        if name == "Lights" and self._geometry.lights_move:
+            self._recorder.forget((target, binding))
+            self._recorder.call(self._geometry.bind_lights, target, binding)
+        else:
+            self._range(target, binding, self._geometry.blocks[name])
+        return True
+
+    def _scene_textures(self, slots: Unit) -> None:
+        """Any array at first: a batch leaves the slots that its materials do not fill as they are."""
         assert self._geometry is not None
         filter_ = sampler(self._device, "mipmap", "repeat", False)
-        for offset, texture in enumerate(self._geometry.textures):
-            self._texture(first_unit + offset, texture.glo, filter_)
+        any_array = self._geometry.textures[0].glo if self._geometry.textures else 0
+        for unit in slots.units:
+            self._texture(unit, any_array, filter_)
 
     def _sample(self, unit: int, access: Access) -> None:
         reversed_depth = self._plan.graph.frame.depth == "reversed"

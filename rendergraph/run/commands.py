@@ -43,7 +43,7 @@ from rendergraph.plan.graph import (
 )
 from rendergraph.plan.plan import Barrier, Plan
 from rendergraph.run.allocation import Allocation
-from rendergraph.run.bindings import Bindings
+from rendergraph.run.bindings import SCENE_TEXTURES, Bindings
 from rendergraph.run.geometry import SceneGeometry
 from rendergraph.run.state import Recorder
 
@@ -208,13 +208,11 @@ class CommandBuilder:
         assert geometry is not None, "plan_document refuses scene draws without a scene"
         tessellated = program is not None and any(stage == "tess_evaluation" for stage, _ in program.stages)
         self._vertex_array(geometry.vertex_array(self._programs[subpass.name]))
-        # An indirect draw of this frame's own arguments may have bound another buffer.
-        self._recorder.call(geometry.bind_commands)
+        textures = self._programs[subpass.name].samplers.get(SCENE_TEXTURES)
+        units = textures.units if textures is not None else range(0)
         for queue in work.queues:
-            for batch in geometry.batches[queue, work.instances]:
-                self._recorder.cull("none" if batch.double_sided else work.cull)
-                self._recorder.front_face(batch.mirrored)
-                self._recorder.call(geometry.draw, batch, tessellated)
+            self._recorder.call(geometry.draw, queue, work.instances, work.cull, units, tessellated)
+        self._recorder.forget_draws(units)
         self._recorder.front_face(False)
 
     def _vertex_array(self, array: int) -> None:

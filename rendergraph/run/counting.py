@@ -44,7 +44,7 @@ def count_step(plan: Plan, subpass: SubPass, geometry: SceneGeometry | None) -> 
             return replace(none, draws=count, draw_calls=1, triangles=None)
         case DrawScene(queues, instances):
             assert geometry is not None
-            batches = [batch for queue in queues for batch in geometry.batches[queue, instances]]
+            batches = [batch for queue in queues for batch in geometry.batches(queue, instances)]
             draws, triangles = sum(b.count for b in batches), sum(b.triangles for b in batches)
             return replace(none, draws=draws, draw_calls=len(batches), triangles=triangles)
         case Dispatch(x, y, z):

@@ -8,21 +8,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from rendergraph.device import enums
 from rendergraph.device.buffers import Buffer, create_buffer, upload_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.programs import LinkedProgram
+from rendergraph.run.batches import Batch, Batches, cut_batches
 from rendergraph.run.scene_store import PAD, SceneStore
+from rendergraph.run.vertex_inputs import create_vertex_array
 from rendergraph.scene.draw_queues import draw_runs
-from rendergraph.scene.gpu_layout import pack_instances, pack_lights
+from rendergraph.scene.gpu_layout import pack_instances, pack_lights, place_textures
 from rendergraph.scene.scene import Camera, Scene
 
-#: Vertex inputs: name, components, offset in the attribute stream (positions have a stream of their own, which is all
-#: that depth-only passes read).
-ATTRIBUTES = (("in_normal", 3, 0), ("in_tangent", 4, 12), ("in_uv0", 2, 28), ("in_uv1", 2, 36), ("in_color", 4, 44))
-ATTRIBUTE_STRIDE = 60
 COMMAND_BYTES = 20
 
 #: Most bytes of draw commands kept for a moving camera; beyond it neighbouring frames share an order.
@@ -32,32 +28,21 @@ LIGHT_BUDGET = 64 * 2**20
 
 
 @dataclass(frozen=True, slots=True)
-class Batch:
-    """A run of draw commands with one culling rule: first command and count, within one frame's commands, and the
-    triangles (replays included) they draw.
-    """
-
-    first: int
-    count: int
-    double_sided: bool
-    mirrored: bool
-    triangles: int
-
-
-@dataclass(frozen=True, slots=True)
 class _DrawOrder:
-    """Draw commands sorted for every eye, one block after another; the batches they are drawn in, by queue and replays;
-    and each frame's block.
+    """Draw commands sorted for every eye, one block after another; each block's batches (where blended draws of unlike
+    state change places, their runs are cut elsewhere); and each frame's block.
     """
 
     packed: bytes
-    batches: dict[tuple[str, int], tuple[Batch, ...]]
+    batches: tuple[Batches, ...]
     block_bytes: int
     block_of: tuple[int, ...]
 
 
 class SceneGeometry:
-    """The uploaded scene. ``blocks`` are the storage blocks a shader may name; ``textures`` are ``u_textures``."""
+    """The uploaded scene. ``blocks`` are the blocks a shader may name; of ``textures``, :meth:`draw` binds those that
+    a batch needs as ``u_textures``.
+    """
 
     def __init__(
         self,
@@ -75,9 +60,10 @@ class SceneGeometry:
         self._store = store or SceneStore(device, scene)
         self.lights_move = _move(scene, cameras)
         self._lights_packed = self._all_lights(scene, len(cameras), self.lights_move)
+        self._instances_packed = pack_instances(scene) or PAD.tobytes() * 2
         self.textures, materials = self._store.materials(scene)
         self.blocks: dict[str, Buffer] = {
-            "Instances": create_buffer(device, pack_instances(scene) or PAD.tobytes() * 2, "Instances"),
+            "Instances": create_buffer(device, self._instances_packed, "Instances"),
             "Materials": materials,
             "Lights": create_buffer(device, self._lights_packed, "Lights"),
         }
@@ -86,7 +72,7 @@ class SceneGeometry:
         self._order = self._sorted_commands(scene, cameras)
         self._commands_packed = self._order.packed
         self._commands = create_buffer(device, self._commands_packed, "scene draw commands")
-        self._frame_offset = 0
+        self._block = 0
 
     def change(self, scene: Scene, cameras: list[Camera]) -> bool:
         """Upload what differs of another state of the scene, seen by other cameras: lights and the order of draws.
@@ -95,7 +81,7 @@ class SceneGeometry:
         order = self._sorted_commands(scene, cameras)
         lights_move = _move(scene, cameras)
         lights = self._all_lights(scene, len(cameras), lights_move)
-        if (order.batches, lights_move) != (self._order.batches, self.lights_move):
+        if (pack_instances(scene) or PAD.tobytes() * 2, lights_move) != (self._instances_packed, self.lights_move):
             return False
         if len(order.packed) > len(self._commands_packed) or len(lights) != len(self._lights_packed):
             return False
@@ -122,67 +108,70 @@ class SceneGeometry:
         self._light_offset = 0
         return b"".join(blocks) if move else first
 
-    def bind_lights(self, binding: int) -> None:
-        """Let a storage binding point see this frame's lights."""
-        self._gl.glBindBufferRange(
-            enums.SHADER_STORAGE_BUFFER, binding, self.blocks["Lights"].glo, self._light_offset, self._light_bytes
-        )
+    def bind_lights(self, target: int, binding: int) -> None:
+        """Let a binding point of storage or uniform blocks see this frame's lights."""
+        self._gl.glBindBufferRange(target, binding, self.blocks["Lights"].glo, self._light_offset, self._light_bytes)
 
     # ---- draw commands
-
-    @property
-    def batches(self) -> dict[tuple[str, int], tuple[Batch, ...]]:
-        """By queue and replays."""
-        return self._order.batches
 
     def _sorted_commands(self, scene: Scene, cameras: list[Camera]) -> _DrawOrder:
         eyes = [camera.position for camera in cameras]
         distinct = list(dict.fromkeys(eyes))
         per_frame = max(1, len(scene.instances) * COMMAND_BYTES * len(self._replays))
         kept = distinct[:: max(1, -(-len(distinct) * per_frame // COMMAND_BUDGET))]
-        found: dict[tuple[str, int], tuple[Batch, ...]] = {}
-        blocks = []
-        for eye in kept:
-            queues = draw_runs(scene, eye)
-            parts, first = [], 0
-            for replay in sorted(self._replays):
-                for queue, runs in queues.items():
-                    batches = []
-                    for run in runs:
-                        commands = run.commands.copy()
-                        commands["instance_count"] *= replay
-                        indices = commands["count"].astype(np.int64) * commands["instance_count"]
-                        triangles = int(indices.sum()) // 3
-                        batches.append(Batch(first, len(commands), run.double_sided, run.mirrored, triangles))
-                        parts.append(commands)
-                        first += len(commands)
-                    found[queue, replay] = tuple(batches)
-            blocks.append(np.concatenate(parts).tobytes() if parts else b"")
+        placement, names = place_textures(scene), [texture.glo for texture in self.textures]
+        cut = [cut_batches(draw_runs(scene, eye, placement), self._replays, names) for eye in kept]
+        blocks = [commands for _, commands in cut]
         where = {eye: index for index, eye in enumerate(kept)}
         nearest, block_of = 0, []
         for eye in eyes:
             nearest = where.get(eye, nearest)
             block_of.append(nearest)
         return _DrawOrder(
-            b"".join(blocks) or bytes(COMMAND_BYTES), found, len(blocks[0]) if blocks else 0, tuple(block_of)
+            b"".join(blocks) or bytes(COMMAND_BYTES),
+            tuple(batches for batches, _ in cut),
+            len(blocks[0]) if blocks else 0,
+            tuple(block_of),
         )
 
     def begin_frame(self, index: int) -> None:
         """Use the commands sorted for this frame's camera."""
         block_of = self._order.block_of
-        block = block_of[min(index, len(block_of) - 1)] if block_of else 0
-        self._frame_offset = block * self._order.block_bytes
+        self._block = block_of[min(index, len(block_of) - 1)] if block_of else 0
         self._light_offset = self._light_block[min(index, len(self._light_block) - 1)] * self._light_stride
 
-    def bind_commands(self) -> None:
-        """Make the scene's draw commands the source of indirect draws."""
-        self._gl.glBindBuffer(enums.DRAW_INDIRECT_BUFFER, self._commands.glo)
+    def batches(self, queue: str, replays: int) -> tuple[Batch, ...]:
+        """This frame's batches of a queue; none for a frame without a camera."""
+        return self._order.batches[self._block][queue, replays] if self._order.batches else ()
 
-    def draw(self, batch: Batch, patches: bool = False) -> None:
-        """Issue a batch with the state that is bound; ``patches`` of three vertices feed tessellation shaders."""
+    def draw(self, queue: str, replays: int, cull: str, texture_units: range, patches: bool) -> None:
+        """Issue this frame's batches of a queue with the program that is bound.
+
+        Sets culling (``cull``, but none where double-sided), the front face and the texture arrays of the materials'
+        first slots, one of ``texture_units`` each, and leaves them as the last batch needs them. ``patches`` of three
+        vertices feed tessellation shaders.
+        """
+        gl = self._gl
         mode = enums.PATCHES if patches else enums.TRIANGLES
-        offset = self._frame_offset + batch.first * COMMAND_BYTES
-        self._gl.glMultiDrawElementsIndirect(mode, enums.UNSIGNED_INT, offset, batch.count, COMMAND_BYTES)
+        frame = self._block * self._order.block_bytes
+        # An indirect draw of this frame's own arguments may have bound another buffer.
+        gl.glBindBuffer(enums.DRAW_INDIRECT_BUFFER, self._commands.glo)
+        gl.glCullFace(enums.FRONT if cull == "front" else enums.BACK)
+        culls, faces = None, None
+        bound: dict[int, int] = {}
+        for batch in self.batches(queue, replays):
+            if culls is not (culled := cull != "none" and not batch.double_sided):
+                culls = culled
+                (gl.glEnable if culled else gl.glDisable)(enums.CULL_FACE)
+            if faces is not batch.mirrored:
+                faces = batch.mirrored
+                gl.glFrontFace(enums.CW if faces else enums.CCW)
+            for slot, texture in batch.textures:
+                if slot < len(texture_units) and bound.get(slot) != texture:
+                    bound[slot] = texture
+                    gl.glBindTextureUnit(texture_units[slot], texture)
+            offset = frame + batch.first * COMMAND_BYTES
+            gl.glMultiDrawElementsIndirect(mode, enums.UNSIGNED_INT, offset, batch.count, COMMAND_BYTES)
 
     # ---- vertex arrays
 
@@ -191,21 +180,9 @@ class SceneGeometry:
         inputs = tuple(sorted(program.attributes.items()))
         if inputs in self._vertex_arrays:
             return self._vertex_arrays[inputs]
-        gl = self._gl
-        array = self._device.create_object("glCreateVertexArrays", label="scene vertices")
-        gl.glVertexArrayElementBuffer(array, self._store.indices.glo)
-        gl.glVertexArrayVertexBuffer(array, 0, self._store.positions.glo, 0, 12)
-        gl.glVertexArrayVertexBuffer(array, 1, self._store.attributes.glo, 0, ATTRIBUTE_STRIDE)
-        layout = {"in_position": (3, 0, 0)} | {name: (size, offset, 1) for name, size, offset in ATTRIBUTES}
-        for name, location in inputs:
-            if name not in layout:
-                continue
-            size, offset, stream = layout[name]
-            gl.glEnableVertexArrayAttrib(array, location)
-            gl.glVertexArrayAttribFormat(array, location, size, enums.FLOAT, 0, offset)
-            gl.glVertexArrayAttribBinding(array, location, stream)
-        self._vertex_arrays[inputs] = array
-        return array
+        streams = self._store.positions, self._store.attributes, self.blocks["Instances"]
+        self._vertex_arrays[inputs] = create_vertex_array(self._device, inputs, streams, self._store.indices)
+        return self._vertex_arrays[inputs]
 
 
 def _move(scene: Scene, cameras: list[Camera]) -> bool:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from rendergraph.document.collector import collector_paused
 from rendergraph.document.load import Document
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
 from rendergraph.document.overrides import SET_PREFIX
@@ -61,8 +62,9 @@ def plan_for_scene(
     """Plan the document for a scene that is loaded already (``None``: the graph has none). No OpenGL."""
     start = time.perf_counter_ns()
     features = scene_features(document, loaded, size, frames)
-    graph, warnings = expand(document, features=features, full=full, size=size, frames=frames)
-    plan, more = compile_plan(graph, options)
+    with collector_paused():
+        graph, warnings = expand(document, features=features, full=full, size=size, frames=frames)
+        plan, more = compile_plan(graph, options)
     end = time.perf_counter_ns()
     if loaded is None:
         for subpass in plan.order:

@@ -126,7 +126,7 @@ def run_plan(
                 device.info.renderer, device.info.vendor, device.info.driver, clock.name, asdict(clock.proof)
             ),
             frames=count,
-            warnings=(*planned.warnings, *session.notes),
+            warnings=(*planned.warnings, *session.notes, *device.debug.take_warnings()),
             counters=counters,
             switches=tuple(session.switches),
         )

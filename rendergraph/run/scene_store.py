@@ -22,7 +22,7 @@ PAD = np.zeros(16, dtype=np.uint32)
 
 
 class SceneStore:
-    """``positions`` float32[n, 3] and ``attributes`` (geometry.ATTRIBUTES) by vertex, and ``indices`` uint32[m]."""
+    """``positions`` float32[n, 3] and ``attributes`` (vertex_inputs.py) by vertex, and ``indices`` uint32[m]."""
 
     def __init__(self, device: Device, scene: Scene) -> None:
         self._device = device

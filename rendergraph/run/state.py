@@ -56,6 +56,12 @@ class Recorder:
         """What ``key`` is set to changes from frame to frame: the next ``set`` must not trust it."""
         self._state.pop(key, None)
 
+    def forget_draws(self, texture_units: range) -> None:
+        """A draw of the scene sets culling, winding and these texture units by itself."""
+        units = (("texture", unit) for unit in texture_units)
+        for key in (("cap", enums.CULL_FACE), "cull_face", "front_face", *units):
+            self.forget(key)
+
     def take(self) -> tuple[Call, ...]:
         """The calls since the last time."""
         taken, self.calls = tuple(self.calls), []

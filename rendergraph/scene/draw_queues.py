@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -9,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rendergraph.scene.scene import F64, Alpha, Scene
+from rendergraph.scene.texture_arrays import TexturePlacement
 
 #: ``DrawElementsIndirectCommand`` (GL 4.5, 10.4), 20 bytes. ``base_instance`` is the index into ``Instances``.
 DRAW_COMMAND = np.dtype(
@@ -29,39 +31,52 @@ QUEUES = ("opaque", "masked", "blended")
 
 @dataclass(frozen=True, slots=True)
 class DrawRun:
-    """Consecutive commands of a queue that one state serves: with or without culling, and which way triangles wind."""
+    """Consecutive commands of a queue that one state serves: with or without culling, which way triangles wind, and the
+    texture array of each slot of ``Material.textures``.
+    """
 
     commands: Commands  # DRAW_COMMAND[n]
     double_sided: bool
     mirrored: bool
+    arrays: tuple[int, ...]
 
 
-def draw_runs(scene: Scene, eye: tuple[float, float, float]) -> dict[str, list[DrawRun]]:
+def draw_runs(scene: Scene, eye: tuple[float, float, float], placement: TexturePlacement) -> dict[str, list[DrawRun]]:
     """Each of ``QUEUES`` as runs to draw one after another, one command an instance.
 
-    ``opaque`` and ``masked`` are grouped by state and run front to back inside a group, by the distance from ``eye``
-    (world space) to the centre of the instance's bounds. ``blended`` keeps its back-to-front order whatever the state,
-    so neighbours of equal state form its runs. Equal distances keep the order of ``Scene.instances``.
+    ``opaque`` and ``masked`` are grouped by state. Groups follow one another by their nearest instance and run front to
+    back, by the distance from ``eye`` (world space) to the centre of the instance's bounds. ``blended`` keeps its
+    back-to-front order whatever the state, so neighbours of equal state form its runs. Equal distances keep the order
+    of ``Scene.instances``.
     """
     distances, mirrored = _placements(scene, np.asarray(eye, dtype=np.float64))
     members: dict[str, list[int]] = {queue: [] for queue in QUEUES}
-    state: dict[int, tuple[bool, bool]] = {}
+    arrays = [placement.arrays_of(material) for material in scene.materials]
+    state: dict[int, tuple[bool, bool, tuple[int, ...]]] = {}
     for index, instance in enumerate(scene.instances):
         mesh = scene.meshes[instance.mesh]
         if mesh.index_count:
             material = scene.materials[mesh.material]
             members[QUEUES[material.alpha]].append(index)
-            state[index] = material.double_sided, bool(mirrored[index])
+            state[index] = material.double_sided, bool(mirrored[index]), arrays[mesh.material]
     runs: dict[str, list[DrawRun]] = {}
     for queue, indices in members.items():
         if queue == QUEUES[Alpha.BLENDED]:
             indices.sort(key=lambda index: -float(distances[index]))
         else:
-            indices.sort(key=lambda index: (state[index], float(distances[index])))
+            indices = _grouped(sorted(indices, key=lambda index: float(distances[index])), state)
         runs[queue] = [
             DrawRun(_commands(scene, list(group)), *key) for key, group in groupby(indices, key=state.__getitem__)
         ]
     return runs
+
+
+def _grouped(indices: list[int], state: Mapping[int, Hashable]) -> list[int]:
+    """Indices of equal state side by side, in the order of each state's first."""
+    groups: dict[Hashable, list[int]] = {}
+    for index in indices:
+        groups.setdefault(state[index], []).append(index)
+    return [index for group in groups.values() for index in group]
 
 
 def _placements(scene: Scene, eye: F64) -> tuple[F64, npt.NDArray[np.bool_]]:

@@ -42,6 +42,10 @@ class SceneFeatures:
     normal_mapped: bool = False
     occlusion_mapped: bool = False
     textured: bool = False
+    texture_transforms: bool = False  # a texture is moved, turned or scaled
+    texture_wraps: bool = False  # a texture is clamped or mirrored
+    second_uv: bool = False  # a texture uses the second texture coordinates
+    vertex_colors: bool = False  # a vertex is not white
     skinned: bool = False
     sun: bool = False
     ambient: bool = False

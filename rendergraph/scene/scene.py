@@ -44,6 +44,11 @@ class TextureUse:
     scale: tuple[float, float] = (1.0, 1.0)
     rotation: float = 0.0  # radians
 
+    @property
+    def transformed(self) -> bool:
+        """Whether KHR_texture_transform changes the coordinates."""
+        return (self.offset, self.scale, self.rotation) != ((0.0, 0.0), (1.0, 1.0), 0.0)
+
 
 @dataclass(frozen=True, slots=True)
 class Material:
@@ -287,6 +292,7 @@ class Scene:
         from rendergraph.scene.texture_arrays import place_textures  # it imports this module
 
         used = [self.materials[self.meshes[i.mesh].material] for i in self.instances]
+        textures = [texture for material in used for texture in material.textures if texture is not None]
         arrays = len(place_textures(self).arrays)
         return SceneFeatures(
             opaque=any(m.alpha is Alpha.OPAQUE for m in used),
@@ -298,6 +304,10 @@ class Scene:
             normal_mapped=any(m.normal_texture is not None for m in used),
             occlusion_mapped=any(m.occlusion_texture is not None for m in used),
             textured=arrays > 0,
+            texture_transforms=any(t.transformed for t in textures),
+            texture_wraps=any(wrap is not Wrap.REPEAT for t in textures for wrap in t.wrap),
+            second_uv=any(t.uv_set == 1 for t in textures),
+            vertex_colors=bool((self.colors != 1.0).any()),
             skinned=any(i.skin is not None for i in self.instances),
             sun=self.sun is not None and any(self.sun.irradiance),
             ambient=self.ambient is not None and any((*self.ambient.sky, *self.ambient.ground)),

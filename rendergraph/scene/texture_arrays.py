@@ -17,6 +17,7 @@ from rendergraph.scene.scene import Image, Material, Scene
 U8 = npt.NDArray[np.uint8]
 
 MAX_ARRAYS = 8
+NO_ARRAY = -1
 MAX_LAYERS = 2048  # GL 4.5's guaranteed MAX_ARRAY_TEXTURE_LAYERS
 MAX_SIZE = 4096
 
@@ -70,6 +71,11 @@ class TexturePlacement:
     def ref(self, image: int) -> tuple[int, int] | None:
         """Array and layer of ``Scene.images[image]``; none for an image that nothing drawn uses."""
         return self.refs.get(image)
+
+    def arrays_of(self, material: Material) -> tuple[int, ...]:
+        """The array of each slot of ``Material.textures``; ``NO_ARRAY`` for an empty one."""
+        places = [None if use is None else self.ref(use.image) for use in material.textures]
+        return tuple(NO_ARRAY if place is None else place[0] for place in places)
 
 
 def place_textures(scene: Scene) -> TexturePlacement:

@@ -16,16 +16,25 @@
 #endif
 
 in vec3 in_position;
+// The instance of this draw command, as attributes that are the same for all its vertices: llvmpipe walks through the
+// lanes of a storage block's load one by one, and would for every vertex.
+in mat4 in_world;
 #if !DEPTH_ONLY
 in vec3 in_normal;
 in vec4 in_tangent;
+in mat3 in_normal_rows;
 #endif
 #if !DEPTH_ONLY || ALPHA_TEST
-in vec2 in_uv0;
-in vec2 in_uv1;
-in vec4 in_color;
+in uvec2 in_material_flags;
 #define VARYING out
 #include <varyings.glsl>
+in vec2 in_uv0;
+#if SECOND_UV
+in vec2 in_uv1;
+#endif
+#if VERTEX_COLORS
+in vec4 in_color;
+#endif
 #endif
 
 invariant gl_Position;
@@ -38,8 +47,7 @@ vec3 unit_or_zero(vec3 v) {
 #endif
 
 void main() {
-    uint index = uint(gl_BaseInstanceARB);
-    precise vec4 world = instances[index].world * vec4(in_position, 1.0);
+    precise vec4 world = in_world * vec4(in_position, 1.0);
 #if LAYERED
     gl_Position = cascades.to_clip[gl_InstanceID] * world;
     gl_Layer = gl_InstanceID;
@@ -49,20 +57,20 @@ void main() {
 
 #if !DEPTH_ONLY || ALPHA_TEST
     vertex.uv0 = in_uv0;
+#if SECOND_UV
     vertex.uv1 = in_uv1;
+#endif
+#if VERTEX_COLORS
     vertex.color = in_color;
-    vertex.material = instances[index].material;
+#endif
+    vertex.material = in_material_flags.x;
 #endif
 #if !DEPTH_ONLY
     // Unit length at the vertices, so that scaled instances interpolate like unscaled ones.
-    vertex.normal = unit_or_zero(vec3(
-        dot(instances[index].normal_0.xyz, in_normal),
-        dot(instances[index].normal_1.xyz, in_normal),
-        dot(instances[index].normal_2.xyz, in_normal)
-    ));
-    vertex.tangent.xyz = unit_or_zero(mat3(instances[index].world) * in_tangent.xyz);
+    vertex.normal = unit_or_zero(in_normal * in_normal_rows);
+    vertex.tangent.xyz = unit_or_zero(mat3(in_world) * in_tangent.xyz);
     // A mirroring transform turns the cross product of normal and tangent round.
-    bool mirrored = (instances[index].flags & MIRRORED) != 0u;
+    bool mirrored = (in_material_flags.y & MIRRORED) != 0u;
     vertex.tangent.w = mirrored ? -in_tangent.w : in_tangent.w;
 #endif
 }

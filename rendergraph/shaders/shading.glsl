@@ -28,7 +28,7 @@ vec3 shade_ambient(Brdf b, float roughness) {
     vec3 reflected = environment_reflectance(b, roughness);
     vec3 mirror = reflect(-b.view, b.normal);
     return reflected * ambient_radiance(mirror, roughness)
-        + (1.0 - reflected) * b.diffuse * ambient_radiance(b.normal, 1.0);
+        + (1.0 - reflected) * b.albedo * ambient_radiance(b.normal, 1.0);
 }
 
 // Radiance towards the camera. position [m] and normal (unit) in world space; occlusion dims the ambient light only.
@@ -53,9 +53,10 @@ vec3 shade_surface(
 #endif
 #if LOCAL_LIGHTS
     for (uint i = 0u; i < frame.counts.z; ++i) {
-        vec3 direction;
-        vec3 irradiance = light_irradiance(lights[i], position, direction);
-        if (irradiance != vec3(0.0)) {
+        // One branch around all of it, not one around each part that may be dark: a software rasteriser runs both sides.
+        if (is_in_reach(lights[i], position)) {
+            vec3 direction;
+            vec3 irradiance = light_irradiance(lights[i], position, direction);
             radiance += irradiance * evaluate_brdf(b, direction);
         }
     }

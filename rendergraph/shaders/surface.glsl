@@ -3,13 +3,9 @@
 //   NORMAL_MAP     some material of the scene has a normal map
 //   BACK_FACES     some material shows its back; else faces are not told apart
 //   UNLIT_SURFACES some material is not lit
-//   TEXTURE_SLOTS  bit per slot of Material.textures that some material fills; the rest is not fetched
+//   textures.glsl and varyings.glsl list what else a scene may lack
 #ifndef SURFACE_GLSL
 #define SURFACE_GLSL
-
-#ifndef TEXTURE_SLOTS
-#define TEXTURE_SLOTS 31
-#endif
 
 #ifndef BACK_FACES
 #define BACK_FACES 1
@@ -32,18 +28,33 @@ const int SLOT_EMISSIVE = 4;
 
 // One texture of the fragment's material; white where it has none, the neutral factor of all five but the normal.
 vec4 sample_material(int slot) {
+#if TEXTURE_SLOTS
+    TextureRef reference = materials[vertex.material].textures[slot];
+    vec2 uv = vertex.uv0;
+    vec2 dx = dFdx(vertex.uv0);
+    vec2 dy = dFdy(vertex.uv0);
+#if SECOND_UV
+    bool second = reference.uv_set == 1u;
+    uv = second ? vertex.uv1 : uv;
+    dx = second ? dFdx(vertex.uv1) : dx;
+    dy = second ? dFdy(vertex.uv1) : dy;
+#endif
     vec4 rotations = materials[vertex.material].rotation_0;
     float rotation = slot < 4 ? rotations[slot] : materials[vertex.material].rotation_1.x;
-    bool second = materials[vertex.material].textures[slot].uv_set == 1u;
-    vec2 uv = second ? vertex.uv1 : vertex.uv0;
-    vec2 dx = second ? dFdx(vertex.uv1) : dFdx(vertex.uv0);
-    vec2 dy = second ? dFdy(vertex.uv1) : dFdy(vertex.uv0);
-    return sample_reference(materials[vertex.material].textures[slot], rotation, uv, dx, dy, vec4(1.0));
+    if (reference.array != NO_TEXTURE) {
+        return sample_reference(reference, slot, rotation, uv, dx, dy);
+    }
+#endif
+    return vec4(1.0);
 }
 
 // Linear base colour with its alpha.
 vec4 material_base_color(vec4 texel) {
-    return materials[vertex.material].base_color * vertex.color * texel;
+    vec4 color = materials[vertex.material].base_color * texel;
+#if VERTEX_COLORS
+    color *= vertex.color;
+#endif
+    return color;
 }
 
 // True where an alpha-tested material is cut out.
@@ -95,9 +106,9 @@ Surface fetch_surface() {
     // A rolled loop over the textures the material has: five inlined fetches would cost five times the compilation, and
     // a software rasteriser runs both sides of a branch, but skips iterations.
     vec4 texels[5] = vec4[5](vec4(1.0), vec4(1.0), vec4(1.0), vec4(1.0), vec4(1.0));
-#if TEXTURE_ARRAYS && TEXTURE_SLOTS == 1 // base colour alone: the loop would cost more than the fetch
+#if TEXTURE_SLOTS == 1 // base colour alone: the loop would cost more than the fetch
     texels[SLOT_BASE_COLOR] = sample_material(SLOT_BASE_COLOR);
-#elif TEXTURE_ARRAYS
+#elif TEXTURE_SLOTS
     uint pending = 0u;
     for (int slot = 0; slot < 5; ++slot) {
         if ((TEXTURE_SLOTS & (1 << slot)) != 0) {

@@ -1,8 +1,20 @@
-// A material's textures: KHR_texture_transform, wrap modes and the fetch from the scene's texture arrays.
+// A material's textures: KHR_texture_transform, wrap modes and the fetch from the slot's texture array.
 //
-// TEXTURE_ARRAYS  how many arrays the scene has; 0 leaves all of this out
+//   TEXTURE_SLOTS       bit per slot of Material.textures that some material of the scene fills; 0 leaves all of this out
+//   TEXTURE_TRANSFORMS  0: no texture is moved, turned or scaled
+//   TEXTURE_WRAPS       0: all textures repeat
 #ifndef TEXTURES_GLSL
 #define TEXTURES_GLSL
+
+#ifndef TEXTURE_SLOTS
+#define TEXTURE_SLOTS 31
+#endif
+#ifndef TEXTURE_TRANSFORMS
+#define TEXTURE_TRANSFORMS 1
+#endif
+#ifndef TEXTURE_WRAPS
+#define TEXTURE_WRAPS 1
+#endif
 
 #include <scene.glsl>
 
@@ -10,47 +22,10 @@ const uint NO_TEXTURE = 0xffffffffu;
 const uint WRAP_CLAMP = 1u;
 const uint WRAP_MIRROR = 2u;
 
-#if TEXTURE_ARRAYS
-uniform sampler2DArray u_textures[TEXTURE_ARRAYS];
-
-// A sampler array may only be indexed by a value that is the same for all invocations; neighbours of another draw may
-// want another array. So: constant indices, chosen by a branch, and gradients from before it.
-#if TEXTURE_ARRAYS == 1
-#define EACH_ARRAY(DO) DO(0)
-#elif TEXTURE_ARRAYS == 2
-#define EACH_ARRAY(DO) DO(0) DO(1)
-#elif TEXTURE_ARRAYS == 3
-#define EACH_ARRAY(DO) DO(0) DO(1) DO(2)
-#elif TEXTURE_ARRAYS == 4
-#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3)
-#elif TEXTURE_ARRAYS == 5
-#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3) DO(4)
-#elif TEXTURE_ARRAYS == 6
-#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5)
-#elif TEXTURE_ARRAYS == 7
-#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6)
-#elif TEXTURE_ARRAYS == 8
-#define EACH_ARRAY(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)
-#else
-#error more texture arrays than this shader has cases for
-#endif
-
-#define FETCH(i) case i: return textureGrad(u_textures[i], coordinate, dx, dy);
-#define SIZE(i) case i: return vec2(textureSize(u_textures[i], 0).xy);
-
-vec4 fetch_array(uint array, vec3 coordinate, vec2 dx, vec2 dy) {
-    switch (int(array)) {
-        EACH_ARRAY(FETCH)
-        default: return vec4(1.0);
-    }
-}
-
-vec2 array_size(uint array) {
-    switch (int(array)) {
-        EACH_ARRAY(SIZE)
-        default: return vec2(1.0);
-    }
-}
+#if TEXTURE_SLOTS
+// The array that each slot's texture lies in. A draw command has materials of one set of arrays alone: which array, and
+// even which slot, may then be computed, as long as all invocations of a draw compute the same.
+uniform sampler2DArray u_textures[5];
 
 // One coordinate, wrapped. Samplers repeat in hardware; clamped and mirrored coordinates stay `margin` (half a texel of
 // the coarsest level read) inside, so that filtering never reaches across the seam.
@@ -62,15 +37,10 @@ float wrap_coordinate(float x, uint mode, float margin) {
     }
     return clamp(x, margin, 1.0 - margin);
 }
-#endif
 
-// The texture a reference names, or `otherwise`. dx, dy: screen-space derivatives of `uv`, taken where all invocations
-// of a quad still run.
-vec4 sample_reference(TextureRef reference, float rotation, vec2 uv, vec2 dx, vec2 dy, vec4 otherwise) {
-#if TEXTURE_ARRAYS
-    if (reference.array == NO_TEXTURE) {
-        return otherwise;
-    }
+// The texture of a slot. dx, dy: screen-space derivatives of `uv`, taken where all invocations of a quad still run.
+vec4 sample_reference(TextureRef reference, int slot, float rotation, vec2 uv, vec2 dx, vec2 dy) {
+#if TEXTURE_TRANSFORMS
     // Scale, then turn counter-clockwise as seen in the image (v grows downward), then move.
     float c = cos(rotation);
     float s = sin(rotation);
@@ -79,20 +49,20 @@ vec4 sample_reference(TextureRef reference, float rotation, vec2 uv, vec2 dx, ve
     uv = turn * (uv * scale) + reference.transform.xy;
     dx = turn * (dx * scale);
     dy = turn * (dy * scale);
-
+#endif
+#if TEXTURE_WRAPS
     uint wrap_s = reference.wrap & 3u;
     uint wrap_t = (reference.wrap >> 2) & 3u;
     if ((wrap_s | wrap_t) != 0u) {
-        vec2 size = array_size(reference.array);
+        vec2 size = vec2(textureSize(u_textures[slot], 0).xy);
         vec2 texels = max(abs(dx), abs(dy)) * size;
         float coarsest = exp2(ceil(log2(max(max(texels.x, texels.y), 1.0))));
         vec2 margin = min(0.5 * coarsest / size, 0.5);
         uv = vec2(wrap_coordinate(uv.x, wrap_s, margin.x), wrap_coordinate(uv.y, wrap_t, margin.y));
     }
-    return fetch_array(reference.array, vec3(uv, float(reference.layer)), dx, dy);
-#else
-    return otherwise;
 #endif
+    return textureGrad(u_textures[slot], vec3(uv, float(reference.layer)), dx, dy);
 }
+#endif
 
 #endif

@@ -67,7 +67,7 @@ def test_one_bench_file_compares_its_sides(rg: Rg, tmp_path: Path) -> None:
     path = write(tmp_path / "bench.json", bench(1.2))
     outcome = rg("diff", path, "--format", "json")
     assert outcome.code == 1
-    assert json.loads(outcome.out)["times"][0]["name"] == "light"
+    assert json.loads(outcome.out)["times"][0]["name"] == "light.shade"
     assert rg("diff", f"{path}@A", f"{path}@A").code == 0
 
 

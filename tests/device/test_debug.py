@@ -113,3 +113,29 @@ def test_upload_out_of_range_names_texture(device: Device) -> None:
         )
     assert caught.value.diagnostics[0].data["resource"] == "small"
     destroy_texture(device, texture)
+
+
+def warn(device: Device, text: bytes) -> None:
+    """What the driver does that notices undefined behaviour: llvmpipe cannot be made to."""
+    device.debug._callback(e.DEBUG_SOURCE_API, e.DEBUG_TYPE_UNDEFINED_BEHAVIOR, 7, 0x9147, len(text), text, None)
+
+
+def test_undefined_behaviour_is_a_warning_with_pass_and_resource_said_once(device: Device) -> None:
+    assert device.debug.take_warnings() == ()
+    at = Position("graph.yaml", 14, 9)
+    for _ in range(5):  # every frame
+        with device.scope("blur.horizontal", at):
+            device.debug.subject = "hdr"
+            warn(device, b"sampling what is being written")
+            device.debug.subject = ""
+    with device.scope("other"):
+        warn(device, b"sampling what is being written")
+    first, second = device.debug.take_warnings()
+    assert (first.code, first.severity, first.position) == ("RG507", "warning", at)
+    assert first.data == {
+        "where": " in blur.horizontal", "what": " on 'hdr'", "detail": "sampling what is being written",
+        "scope": "blur.horizontal", "resource": "hdr",
+    }  # fmt: skip
+    assert (second.data["scope"], second.data["resource"]) == ("other", "")
+    assert device.debug.take_warnings() == (), "taken is taken"
+    device.check()

@@ -32,10 +32,10 @@ def interleaved(
     *,
     slowdown: float = 1.0,
     layout: float = 0.0,
-    shape: tuple[int, int, int] = (5, 4, 5),
+    shape: tuple[int, int, int] = (10, 3, 5),
 ) -> tuple[Runs, Runs]:
-    """Two sides in turn: ``shape`` is processes, blocks of each side, frames a block. ``layout`` is the spread of what
-    each process draws anew for either side.
+    """Two sides in turn: ``shape`` is processes, blocks of each side, frames a block, as `rg bench` has them by itself.
+    ``layout`` is the spread of what each process draws anew for either side.
     """
     processes, blocks, frames = shape
     sides: tuple[list[Floats], list[Floats]] = ([], [])

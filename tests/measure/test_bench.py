@@ -11,10 +11,11 @@ from typing import Any
 
 import pytest
 
-from rendergraph.document.messages import RenderGraphError
+from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.measure import bench_process
 from rendergraph.measure.bench import Bench, bench_sides
 from rendergraph.measure.bench_job import BenchJob, Side
+from rendergraph.measure.bench_worker import plain
 from rendergraph.report.bench_table import bench_tables
 from rendergraph.report.read_records import read_pair, read_record
 
@@ -52,6 +53,7 @@ def test_two_sides(graph: str, tmp_path: Path) -> None:
     for block in record["blocks"]:
         for side in "AB":
             assert len(block[side]["frame_ms"]) == len(block[side]["passes"]["p"]) == 3
+            assert block[side]["subpasses"] == {"p.draw": block[side]["passes"]["p"]}
             assert min(block[side]["frame_ms"]) > 0
     assert record["sides"]["B"]["set"] == list(heavy)
     for side in "AB":
@@ -80,6 +82,19 @@ def test_two_sides(graph: str, tmp_path: Path) -> None:
     a, b = read_pair(str(tmp_path / "b.json"))
     assert a.times is not None
     assert b.times is not None
+    assert list(b.times.steps) == ["p.draw"]
+    assert b.times.bound is not None
+    assert b.times.bound.bound_by == "gpu"
+    assert record["driver_warnings"] == []
+
+
+def test_what_the_driver_warned_of_is_told_once_for_all_processes(graph: str) -> None:
+    bench = Bench(BenchJob(bench_sides([graph])))
+    heard = diagnose("RG507", None, where=" in p", what="", detail="undefined", scope="p", resource="")
+    for process in range(3):
+        bench._take({"event": "warnings", "data": [plain(heard)]}, process, False)
+    assert bench.findings() == [heard]
+    assert bench.record()["driver_warnings"] == [{"text": "undefined", "subpass": "p", "resource": ""}]
 
 
 def test_one_side_is_a_stored_baseline(graph: str, tmp_path: Path) -> None:
@@ -159,9 +174,10 @@ def test_ctrl_c_keeps_what_is_complete(graph: str, tmp_path: Path) -> None:
     )
     try:
         deadline = time.monotonic() + 60
-        while not _worker_blocks(process.pid) and time.monotonic() < deadline:
-            time.sleep(0.2)
-        time.sleep(3.0)
+        seen: set[str] = set()
+        while len(seen) < 2 and time.monotonic() < deadline:  # the second worker: the first one's blocks are complete
+            seen.update(_worker_blocks(process.pid))
+            time.sleep(0.05)
         os.kill(process.pid, signal.SIGINT)
         _, errors = process.communicate(timeout=30)
     finally:

@@ -6,6 +6,7 @@ import pytest
 
 from rendergraph.measure.bound import THRESHOLDS, bound_of, classify
 from rendergraph.measure.bound_evidence import Evidence, RoundTimes, weigh
+from rendergraph.report.bound_text import bound_text
 from rendergraph.run.result import StepCounters
 
 
@@ -102,3 +103,24 @@ def test_rounds_that_disagree_are_told() -> None:
 def test_a_frame_of_no_time_divides_nothing_by_zero() -> None:
     nothing = {name: frame(0.0) for name in PIXELS}
     assert classify({name: [run] for name, run in nothing.items()}, [])["class"] in ("gpu", "cpu")
+
+
+def test_a_graph_without_half_its_size_is_told_by_the_rest() -> None:
+    """Sizes that are fixed and fit one frame alone: no figure for pixels, so none is made up."""
+    for rounds, counters, expected in ((CALLS, MANY, "draw_calls"), (PIXELS, ONE, "gpu"), (HOST, ONE, "cpu")):
+        kept = {name: [run] for name, run in rounds.items() if name != "half_resolution"}
+        found = classify(kept, counters)
+        assert found["evidence"]["half_resolution"] is None
+        assert found["class"] == expected
+        assert "half resolution " not in bound_text("the frame", found)
+        assert "nothing rasterised" in bound_text("the frame", found)
+
+
+def test_draws_are_counted_in_the_singular() -> None:
+    assert bound_text("A", classify({name: [run] for name, run in PIXELS.items()}, ONE)).endswith(
+        "1 draw of 48000 primitives"
+    )
+    few = [StepCounters("p.draw", draws=2, triangles=2)]
+    assert bound_text("A", classify({name: [run] for name, run in PIXELS.items()}, few)).endswith(
+        "2 draws of 1 primitive"
+    )

@@ -49,6 +49,7 @@ SPENT = Spending(
     passes_ms={"paint": 2.0, "again": 5.0, "show": 1.0, "also": 2.0},
     steps_ms={"paint.draw": 2.0},
     draws={"paint": 1, "again": 7, "show": 1, "also": 1},
+    draw_calls=4,
 )
 
 
@@ -75,6 +76,7 @@ def test_draws_name_the_pass_with_the_most(tmp_path: Path) -> None:
     document, _ = load(tmp_path, "{draws: 9}")
     found = only(check_spending(document, SPENT))
     assert (found.code, found.data["found"], found.data["name"], found.data["most"]) == ("RG704", 10, "again", 7)
+    assert found.data["calls"] == 4, "fewer calls than draws: each draw of a multi-draw counts"
     document, _ = load(tmp_path, "{draws: 10}")
     assert check_spending(document, SPENT) == []
 
@@ -140,7 +142,7 @@ def timing(**samples: list[float]) -> dict[str, Any]:
             {
                 "name": name,
                 "ms": {"samples": values},
-                "counters": {"draws": 2},
+                "counters": {"draws": 2, "draw_calls": 1},
                 "subpasses": [
                     {"name": f"{name}.{step}", "ms": {"samples": [part * v for v in values]}}
                     for step, part in (("quick", 0.1), ("slow", 0.9))
@@ -172,9 +174,14 @@ def test_each_side_of_a_bench_is_checked_over_all_its_blocks(tmp_path: Path) -> 
     document, record = load(tmp_path, "{frame_ms: 4, passes: {paint: 2}, draws: 2, transient_mib: 0.001}")
 
     def block(*frames: float) -> dict[str, Any]:
-        return {"frame_ms": [*frames], "passes": {"paint": [f / 2 for f in frames], "show": [0.1] * len(frames)}}
+        paint = [f / 2 for f in frames]
+        steps = {"paint.quick": [p / 10 for p in paint], "paint.slow": [0.9 * p for p in paint]}
+        return {"frame_ms": [*frames], "passes": {"paint": paint, "show": [0.1] * len(frames)}, "subpasses": steps}
 
-    passes = [{"name": name, "counters": {"draws": 1}} for name in ("paint", "show")]
+    steps = {"paint": [{"name": "paint.quick"}, {"name": "paint.slow"}], "show": []}
+    passes = [
+        {"name": name, "counters": {"draws": 1, "draw_calls": 1}, "subpasses": inside} for name, inside in steps.items()
+    ]
     side = {"passes": passes, "resources": record}
     bench = {
         "sides": {"A": side, "B": side},
@@ -183,6 +190,7 @@ def test_each_side_of_a_bench_is_checked_over_all_its_blocks(tmp_path: Path) -> 
     assert [d.code for d in check_bench(document, bench, "A")] == ["RG703"]
     found = check_bench(document, bench, "B")
     assert [d.code for d in found] == ["RG703", "RG701", "RG702"]
+    assert "'paint.slow'" in found[2].data["worst"]
     assert all("side B" in d.text for d in found)
     alone = {"sides": {"A": side}, "blocks": [{"A": block(5, 5)}]}
     assert not any("side" in d.text for d in check_bench(document, alone, "A"))

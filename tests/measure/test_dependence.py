@@ -48,6 +48,17 @@ def test_processes_that_differ_count_as_few_samples() -> None:
     assert dependence_of_pairs(alike).inflation < 3
 
 
+def test_a_figure_from_processes_is_known_as_well_as_they_are_many() -> None:
+    """However small the part of the variance that is between them: its estimate rests on their number alone."""
+    rng = np.random.default_rng(8)
+    for count in (4, 10):
+        processes = np.repeat(np.arange(count), 40)
+        values = rng.normal(size=40 * count) + 0.7 * rng.normal(size=count)[processes]
+        found = dependence_of_pairs(Sampled(values, processes.tolist()))
+        assert 1.5 < found.inflation < 39
+        assert found.freedom == count - 1
+
+
 def test_sides_measured_apart_see_drift_within_a_process_too() -> None:
     rng = np.random.default_rng(9)
     processes = np.repeat(np.arange(5), 20).tolist()

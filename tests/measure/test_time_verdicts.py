@@ -1,10 +1,13 @@
 """Verdicts by simulation: false alarms stay rare, true slowdowns are found, and doubt is never called unchanged."""
 
 from collections import Counter
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
+from rendergraph.measure.intervals import shift_of_pairs
+from rendergraph.measure.rank_tests import signed_rank
 from rendergraph.measure.run_shift import Runs
 from rendergraph.measure.statistics import Change, Thresholds, Verdict, compare_blocks, compare_runs
 from tests.measure.noise import autoregression, interleaved, one_run
@@ -40,7 +43,7 @@ def test_a_thousand_stored_pairs_without_change(coefficient: float) -> None:
     assert verdicts[Verdict.FASTER] <= 10
 
 
-@pytest.mark.parametrize(("coefficient", "layout"), [(0.5, 0.0), (0.9, 0.0), (0.5, 0.02)])
+@pytest.mark.parametrize(("coefficient", "layout"), [(0.5, 0.0), (0.9, 0.0), (0.5, 0.02), (0.5, 0.1)])
 def test_a_thousand_interleaved_pairs_without_change(coefficient: float, layout: float) -> None:
     rng = np.random.default_rng(13)
     verdicts = Counter(paired(interleaved(rng, coefficient, 0.08, layout=layout)).verdict for _ in range(1000))
@@ -59,6 +62,20 @@ def test_a_thousand_frames_of_thirteen_passes_without_change() -> None:
     assert alarms <= 2
 
 
+def test_processes_that_differ_by_a_tenth_are_not_passes_that_changed() -> None:
+    """Thirteen passes, for each of which either side draws its own shift in every process."""
+    alarms = {}
+    for shape in ((10, 3, 5), (5, 6, 5)):
+        rng = np.random.default_rng(23)
+        alarms[shape] = 0
+        for _ in range(150):
+            sides = {f"pass_{i}": interleaved(rng, 0.5, 0.04, layout=0.1, shape=shape) for i in range(13)}
+            changes = compare_blocks({n: s[0] for n, s in sides.items()}, {n: s[1] for n, s in sides.items()}, USUAL)
+            alarms[shape] += any(change.verdict is Verdict.SLOWER for change in changes.values())
+    assert alarms[10, 3, 5] <= 1
+    assert alarms[10, 3, 5] <= alarms[5, 6, 5], "as many blocks of fewer processes know no more"
+
+
 def test_naive_independence_would_raise_false_alarms() -> None:
     """The twin that must fail: the same noise shuffled, so that nothing tells how alike neighbours were."""
     rng = np.random.default_rng(11)
@@ -69,9 +86,10 @@ def test_naive_independence_would_raise_false_alarms() -> None:
     assert alarms >= 6  # of 200; the rate above allows 2
 
 
-def test_a_slowdown_of_a_tenth_is_found_interleaved() -> None:
+@pytest.mark.parametrize(("noise", "layout"), [(0.05, 0.0), (0.05, 0.01), (0.04, 0.02)])
+def test_a_slowdown_of_a_tenth_is_found_interleaved(noise: float, layout: float) -> None:
     rng = np.random.default_rng(19)
-    found = Counter(paired(interleaved(rng, 0.5, 0.05, slowdown=1.1)).verdict for _ in range(300))
+    found = Counter(paired(interleaved(rng, 0.5, noise, slowdown=1.1, layout=layout)).verdict for _ in range(300))
     assert found[Verdict.SLOWER] >= 285
 
 
@@ -79,7 +97,7 @@ def test_a_slowdown_of_a_tenth_is_found_among_thirteen_passes() -> None:
     rng = np.random.default_rng(23)
     found = 0
     for _ in range(100):
-        sides = {f"pass_{i}": interleaved(rng, 0.5, 0.04, slowdown=1.0 if i else 1.1) for i in range(13)}
+        sides = {f"pass_{i}": interleaved(rng, 0.5, 0.04, slowdown=1.0 if i else 1.1, layout=0.01) for i in range(13)}
         changes = compare_blocks({n: s[0] for n, s in sides.items()}, {n: s[1] for n, s in sides.items()}, USUAL)
         found += changes["pass_0"].verdict is Verdict.SLOWER
     assert found >= 95
@@ -177,6 +195,48 @@ def test_identical_constant_times_are_unchanged() -> None:
     assert stored(constant, constant).verdict is Verdict.UNCHANGED
     blocks = Runs(tuple(np.full(5, 2.0) for _ in range(20)), tuple(i // 4 for i in range(20)))
     assert paired((blocks, blocks)).verdict is Verdict.UNCHANGED
+
+
+def scattered(rng: np.random.Generator, count: int, middle: float) -> Runs:
+    return Runs(tuple(middle * np.exp(rng.normal(0, 1.2, (count, 1)))), tuple(range(count)))
+
+
+@pytest.mark.parametrize("compare", [compare_blocks, compare_runs])
+def test_nothing_gets_faster_than_no_time_at_all(compare: Callable[..., dict[str, Change]]) -> None:
+    """Pairs that scatter: their differences reach far below minus the time before, their ratios never below nothing."""
+    rng = np.random.default_rng(73)
+    beyond = 0
+    for _ in range(50):
+        before, after = scattered(rng, 20, 1.0), scattered(rng, 20, 0.3)
+        change = compare({"f": before}, {"f": after}, USUAL)["f"]
+        assert change.before is not None
+        assert change.low is not None
+        assert change.relative is not None
+        assert -1 < change.low / change.before <= change.relative <= (change.high or np.inf) / change.before
+        a, b = (np.concatenate(side.samples) for side in (before, after))
+        difference = shift_of_pairs(b - a, signed_rank(b - a), USUAL.alpha)
+        beyond += difference.low < -change.before
+    assert beyond > 25, "the same as differences would have said more than -100 %"
+
+
+def test_a_change_and_its_reverse_are_one_another_s_inverse() -> None:
+    rng = np.random.default_rng(79)
+    before, after = interleaved(rng, 0.5, 0.2, slowdown=2.0)
+    for compare in (compare_blocks, compare_runs):
+        there, back = compare({"f": before}, {"f": after}, USUAL)["f"], compare({"f": after}, {"f": before}, USUAL)["f"]
+        assert there.relative is not None
+        assert back.relative is not None
+        assert (1 + there.relative) * (1 + back.relative) == pytest.approx(1.0)
+        assert there.p == pytest.approx(back.p)
+
+
+def test_with_times_of_zero_the_limits_stay_above_no_time() -> None:
+    rng = np.random.default_rng(83)
+    a, b = np.abs(rng.normal(1, 0.9, 40)), np.zeros(40)
+    change = stored(of(a), of(b))
+    assert change.verdict is Verdict.FASTER
+    assert change.before is not None
+    assert change.low == -change.before
 
 
 def test_times_of_zero_need_no_division() -> None:

@@ -32,7 +32,8 @@ vec3 cancelling_brdf(Brdf b, vec3 light) {
     float q = noh * noh * (a2 - 1.0) + 1.0;
     float d = a2 / (PI * q * q);
     vec3 fresnel = schlick_fresnel(b.f0, dot(light, h));
-    return ((1.0 - fresnel) * b.diffuse / PI + fresnel * d * smith_visibility(nol, b.nov, b.alpha)) * nol;
+    float v = 0.5 / (b.nov * smith_root(nol, b.alpha2) + nol * b.root);
+    return ((1.0 - fresnel) * b.lambert + fresnel * d * v) * nol;
 }
 """
 

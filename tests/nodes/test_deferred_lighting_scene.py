@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from rendergraph.device.context import Device
 from rendergraph.document.load import load_document
 from rendergraph.document.messages import RenderGraphError
 from rendergraph.nodes.deferred_lighting import textbook
+from rendergraph.nodes.deferred_lighting.light_model import MOST_UNIFORM_LIGHTS
 from rendergraph.plan.expand import expand
 from rendergraph.plan.graph import Frame
 from rendergraph.run.frame_constants import camera_view
@@ -177,6 +179,18 @@ def test_full_compiles_everything_and_gives_the_same_image(device: Device, tmp_p
     lean = render_scene(device, tmp_path, GRAPH, scene, CAMERA).images["hdr"]
     full = render_scene(device, tmp_path, GRAPH, scene, CAMERA, full=True).images["hdr"]
     assert np.abs(lean - full).max() <= 1e-6 * lean.max()
+
+
+@pytest.mark.gpu
+def test_as_many_lights_as_no_uniform_block_holds(device: Device, tmp_path: Path) -> None:
+    """Black lights add nothing, but move all of them to a storage block."""
+    black = [Light((0, 1, 0), (0, 0, 0), 1.0)] * MOST_UNIFORM_LIGHTS
+    few = render_scene(device, tmp_path, GRAPH, corner(), CAMERA).images["hdr"]
+    many = render_scene(device, tmp_path, GRAPH, corner(lights=[*black, *LIGHTS]), CAMERA).images["hdr"]
+    assert np.abs(few - many).max() <= 1e-6 * few.max()
+    features = SceneFeatures(opaque=True, point_lights=MOST_UNIFORM_LIGHTS)
+    assert defines(tmp_path, features)["UNIFORM_LIGHTS"] == str(MOST_UNIFORM_LIGHTS)
+    assert defines(tmp_path, replace(features, spot_lights=1))["UNIFORM_LIGHTS"] == "0"
 
 
 def defines(folder: Path, features: SceneFeatures, text: str = GRAPH) -> dict[str, str]:

@@ -428,3 +428,28 @@ def test_textures_multiply_factors(device: Device, tmp_path: Path) -> None:
     assert result["emissive"][CENTRE][:3] == pytest.approx(
         (2.0, 2.0 * ((188 / 255 + 0.055) / 1.055) ** 2.4, 0.0), abs=1e-2
     )
+
+
+@pytest.mark.parametrize("alpha", [Alpha.OPAQUE, Alpha.MASKED])
+def test_every_material_sees_its_own_texture_array(device: Device, tmp_path: Path, alpha: Alpha) -> None:
+    """Four squares: three images of unlike sizes, two of them in one array, and none."""
+    colours = [(200, 20, 30), (20, 180, 40), (30, 40, 220)]
+    images = tuple(
+        Image(np.tile(np.array([*colour, 255], dtype=np.uint8), (side, side, 1)), srgb=False)
+        for colour, side in zip(colours, (4, 16, 4), strict=True)
+    )
+    textured = [Material(alpha=alpha, base_color_texture=TextureUse(k)) for k in range(3)]
+    corners = [(-1, -1, 0), (0, -1, 0), (-1, 0, 0), (0, 0, 0)]
+    quads = [Quad(corner, (1, 0, 0), (0, 1, 0), material=k) for k, corner in enumerate(corners)]
+    prepass = "full" if alpha is Alpha.MASKED else "off"
+    result = fill(device, tmp_path, quads, *textured, Material(alpha=alpha), images=images, prepass=prepass)
+    for k, (row, column) in enumerate([(16, 16), (16, 48), (48, 16), (48, 48)]):
+        expected = np.array(colours[k]) / 255 if k < 3 else np.ones(3)
+        assert result["base_color"][row, column, :3] == pytest.approx(expected, abs=2e-3)
+
+
+def test_vertex_colours_reach_the_surface(device: Device, tmp_path: Path) -> None:
+    scene = quad_scene([SQUARE], [Material(base_color=(0.5, 0.5, 0.5, 1.0))])
+    scene.colors[:] = (0.2, 0.4, 0.8, 1.0)
+    images = render_scene(device, tmp_path, SURFACES.replace("PREPASS", "off"), scene, FACING).images
+    assert images["base_color"][CENTRE][:3] == pytest.approx((0.1, 0.2, 0.4), abs=1e-6)

@@ -159,3 +159,33 @@ def test_a_fault_of_the_planner_is_an_internal_error(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(compile_module, "verify", lambda plan: ("order: planted",))
     with pytest.raises(PlanError, match="planted"):
         compile_plan(frame())
+
+
+def scratch() -> Plan:
+    """One target made anew and read three times over; nothing needs the second reading."""
+    rounds = [
+        (make_pass(f"make{i}", [writes("scratch")], after=[f"use{i - 1}"] if i else []),
+         make_pass(f"use{i}", [reads("scratch"), writes(f"t{i}")], after=[f"make{i}"]))
+        for i in range(3)
+    ]  # fmt: skip
+    last = make_pass("last", [reads("t0"), reads("t2"), writes("out")])
+    return compile_plan(make_graph([p for pair in rounds for p in pair] + [last], ["out"]))[0]
+
+
+def test_who_is_replaced_unread_may_be_culled() -> None:
+    plan = scratch()
+    assert plan.culled == ("make1.0", "use1.0")
+    assert verify(plan) == ()
+
+
+@pytest.mark.parametrize("needed", ["make0.0", "make2.0"])
+def test_who_is_read_before_being_replaced_may_not(needed: str) -> None:
+    found = verify(without_step(scratch(), needed))
+    assert [fault for fault in found if fault.startswith("culled") and needed.partition(".")[0] in fault]
+
+
+def test_the_last_word_on_an_output_may_not_be_culled() -> None:
+    plan = scratch()
+    plan = replace(plan, graph=replace(plan.graph, outputs=("out", "scratch")))
+    assert not any(fault.startswith("culled") for fault in verify(plan))
+    assert any("last word" in fault for fault in verify(without_step(plan, "make2.0")))

@@ -59,18 +59,26 @@ def resources(*overrides: str, **options: Any) -> dict[str, Any]:
     return made
 
 
-def bench(slowdown: float = 1.0, *, sides: str = "AB", processes: int = 5, blocks: int = 4) -> dict[str, Any]:
-    """A bench file: two passes, of which ``light`` is slower on side B."""
+def bench(slowdown: float = 1.0, *, sides: str = "AB", processes: int = 10, blocks: int = 3) -> dict[str, Any]:
+    """A bench file: two passes, of which ``light`` is slower on side B: the second half of its two sub-passes."""
     rng = np.random.default_rng(5)
 
     def side(factor: float) -> dict[str, Any]:
         times = {"light": 2.0 * factor, "sky": 1.0}
         drawn = {n: (v * np.exp(0.01 * rng.normal(size=5))).round(6).tolist() for n, v in times.items()}
-        return {"frame_ms": np.sum(list(drawn.values()), axis=0).round(6).tolist(), "passes": drawn}
+        steps = {
+            "light.cull": np.exp(0.01 * rng.normal(size=5)).round(6).tolist(),
+            "light.shade": ((2 * factor - 1) * np.exp(0.01 * rng.normal(size=5))).round(6).tolist(),
+            "sky.draw": drawn["sky"],
+        }
+        frame = np.sum(list(drawn.values()), axis=0).round(6).tolist()
+        return {"frame_ms": frame, "passes": drawn, "subpasses": steps}
 
     facts = timing()
     for entry in facts["passes"]:
         del entry["ms"]
+        names = {"light": ("cull", "shade"), "sky": ("draw",)}[entry["name"]]
+        entry["subpasses"] = [{"name": f"{entry['name']}.{name}", "counters": {"draws": 1}} for name in names]
     del facts["schema"], facts["frame_ms"]
     return {
         "schema": "rendergraph.bench/1",

@@ -5,13 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from rendergraph.document.load import load_document
+from rendergraph.measure.bound import classify
+from rendergraph.measure.bound_evidence import RoundTimes
 from rendergraph.plan.graph import TextureDesc
 from rendergraph.plan.plan import Plan, PlanOptions
 from rendergraph.plan.validate import plan_without_scene
 from rendergraph.report.html import TargetGallery
-from rendergraph.run.result import DeviceFacts, FrameResult, Pixels, RunTimes, SteadyState, StepTimes
+from rendergraph.run.result import DeviceFacts, FrameResult, Pixels, RunTimes, SteadyState, StepCounters, StepTimes
 
 MS = 1_000_000
+
+#: What perturbed runs of a frame of heavy pixels say, a round of each.
+BOUND = classify(
+    {
+        "base": [RoundTimes(10.0, 0.2, 0.2, 10.0)], "half_resolution": [RoundTimes(2.7, 0.2, 0.2, 2.7)],
+        "nothing_rasterised": [RoundTimes(0.4, 0.2, 0.2, 0.4)], "no_draws": [RoundTimes(0.3, 0.2, 0.2, 0.3)],
+    },
+    [StepCounters("p.draw", draws=1, triangles=48000)],
+)  # fmt: skip
 
 
 def made_up_plan(name: str = "deferred_shading") -> Plan:

@@ -7,10 +7,12 @@ from typing import Any
 
 import pytest
 
+from rendergraph.document.messages import RenderGraphError
+from rendergraph.measure.statistics import Verdict
 from rendergraph.report.diff import Comparison, DiffOptions, compare_records, diff_records
 from rendergraph.report.diff_exact import Direction, ExactChange
 from rendergraph.report.read_records import read_record
-from tests.report.diff_records import resources, timing, write
+from tests.report.diff_records import bench, resources, samples, timing, write
 
 
 def compare(tmp_path: Path, before: dict[str, Any], after: dict[str, Any]) -> Comparison:
@@ -191,3 +193,85 @@ def test_another_node_under_the_same_name_is_said(tmp_path: Path) -> None:
     after["passes"][0]["node"] = "clustered"
     (change,) = compare(tmp_path, before, after).exact
     assert (change.kind, change.subject, change.before, change.after) == ("pass", "light", "light_node", "clustered")
+
+
+# ---- sub-passes and bounds
+
+
+def divided(opaque: list[float], masked: list[float], draws: int = 3, name: str = "light") -> dict[str, Any]:
+    """A timing record whose pass has two sub-passes, and another pass that has one."""
+    record = timing({name: [a + b for a, b in zip(opaque, masked, strict=True)], "sky": samples(1.0)})
+    steps = {"opaque": (opaque, draws), "masked": (masked, 6 - draws)}
+    record["passes"][0]["node"] = "light_node"
+    record["passes"][0]["subpasses"] = [
+        {"name": f"{name}.{step}", "ms": {"samples": values}, "counters": {"draws": count}}
+        for step, (values, count) in steps.items()
+    ]
+    sky = record["passes"][1]
+    sky["subpasses"] = [{"name": "sky.draw", "ms": sky["ms"], "counters": dict(sky["counters"])}]
+    return record
+
+
+@pytest.mark.parametrize("name", ["light", "shade"])
+def test_a_slower_subpass_is_named_also_where_its_pass_was_renamed(tmp_path: Path, name: str) -> None:
+    before = divided(samples(2.0), samples(0.5, seed=2))
+    after = divided(samples(2.0, seed=3), samples(0.6, seed=4), name=name)
+    verdicts = {entry.name: entry.change.verdict for entry in compare(tmp_path, before, after).times}
+    assert verdicts[f"{name}.masked"] is Verdict.SLOWER
+    assert verdicts[f"{name}.opaque"] is Verdict.UNCHANGED
+    assert "sky.draw" not in verdicts, "the only sub-pass is its pass"
+    assert set(verdicts) == {"", name, f"{name}.opaque", f"{name}.masked", "sky"}
+
+
+def test_only_subpasses_of_both_sides_are_compared(tmp_path: Path) -> None:
+    """A node that does in one sub-pass now what took two: the one they have in common is compared."""
+    before, after = divided(samples(2.0), samples(0.5)), divided(samples(2.5), samples(0.5))
+    after["passes"][0]["subpasses"].pop()
+    found = compare(tmp_path, before, after)
+    assert {entry.name for entry in found.times if "." in entry.name} == {"light.opaque"}
+    back = compare(tmp_path, after, before)
+    assert {entry.name for entry in back.times if "." in entry.name} == {"light.opaque"}
+
+
+def test_draws_moved_between_subpasses_are_told_and_no_regression(tmp_path: Path) -> None:
+    before, after = (divided(samples(2.0), samples(0.5), draws) for draws in (3, 4))
+    found = compare(tmp_path, before, after)
+    counters = by_kind(found, "counter")
+    assert set(counters) == {"light.opaque.draws", "light.masked.draws"}
+    assert {change.direction for change in counters.values()} == {Direction.CHANGED}
+    assert found.regressions() == []
+
+
+def test_records_without_subpasses_compare_as_before(tmp_path: Path) -> None:
+    found = compare(tmp_path, timing(), divided(samples(2.0), samples(0.5)))
+    assert not any("." in entry.name for entry in found.times)
+
+
+def bound(by: str, agreement: float = 1.0) -> dict[str, Any]:
+    return {"class": by, "agreement": agreement}
+
+
+def test_another_bound_is_noted_and_fails_no_gate(tmp_path: Path) -> None:
+    found = compare(tmp_path, timing(bound=bound("draw_calls", 0.86)), timing(bound=bound("gpu")))
+    (change,) = by_kind(found, "bound").values()
+    assert (change.before, change.after, change.direction) == ("draw_calls", "gpu", Direction.CHANGED)
+    assert "86 %" in change.text
+    assert "100 %" in change.text
+    assert found.regressions() == []
+
+
+@pytest.mark.parametrize("other", [{"bound": bound("gpu", 0.4)}, {"bound": None}, {}])
+def test_the_same_bound_or_an_unknown_one_is_no_difference(tmp_path: Path, other: dict[str, Any]) -> None:
+    assert by_kind(compare(tmp_path, timing(bound=bound("gpu")), timing(**other)), "bound") == {}
+
+
+def test_bounds_of_a_bench_file_s_sides(tmp_path: Path) -> None:
+    record = {**bench(), "bound": {"A": bound("sync"), "B": bound("gpu")}}
+    found = diff_records(write(tmp_path / "b.json", record))
+    assert [(c.before, c.after) for c in by_kind(found, "bound").values()] == [("sync", "gpu")]
+
+
+def test_a_broken_bound_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(RenderGraphError) as caught:
+        compare(tmp_path, timing(bound=bound("gpu", 3.0)), timing())
+    assert [d.code for d in caught.value.diagnostics] == ["RG734"]

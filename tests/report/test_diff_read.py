@@ -138,6 +138,7 @@ def test_bench_files_whose_blocks_do_not_fit(tmp_path: Path) -> None:
         lambda r: r["sides"].pop("B"),
         lambda r: r["sides"].pop("A"),
         lambda r: r["blocks"][0]["A"]["passes"].update(stranger=[1.0]),
+        lambda r: r["blocks"][0]["A"]["subpasses"].update({"light.stranger": [1.0]}),
         lambda r: r["blocks"][0].pop("process"),
     ):
         record = json.loads(json.dumps(bench()))
@@ -150,8 +151,10 @@ def test_sides_of_a_bench_file(tmp_path: Path) -> None:
     a, b = read_pair(two)
     assert a.times is not None
     assert b.times is not None
-    assert a.times.passes["light"].runs.processes == tuple(p for p in range(5) for _ in range(4))
-    assert len(b.times.frame.samples) == 20
+    assert a.times.passes["light"].runs.processes == tuple(p for p in range(10) for _ in range(3))
+    assert len(b.times.frame.samples) == 30
+    assert list(b.times.steps) == ["light.cull", "light.shade", "sky.draw"]
+    assert b.times.steps["light.cull"].runs.count == b.times.passes["light"].runs.count == 150
     assert read_record(f"{two}@B").times is not None
     assert read_record(one).times is not None
     assert refused(two) == "RG737"  # which side?

@@ -14,7 +14,7 @@ from rendergraph.report.html import TargetGallery, html_page
 from rendergraph.report.html.memory import lifetime_chart
 from rendergraph.report.html.times import AXIS, time_chart
 from rendergraph.report.timing import spread, timing_record
-from tests.report.made_up import MS, made_up_gallery, made_up_plan, made_up_result
+from tests.report.made_up import BOUND, MS, made_up_gallery, made_up_plan, made_up_result
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'&{{ 7*7 }}"
 
@@ -158,3 +158,14 @@ def test_lifetimes_and_slots_are_the_plans() -> None:
     heights = [float(y) for y in re.findall(r"V([\d.]+)H", chart.curve)]
     assert min(heights) == pytest.approx(chart.load_at, abs=0.01), "the curve touches LOAD at the peak"
     assert [total.name for total in chart.totals if total.used] == ["view pool"]
+
+
+def test_what_the_frame_is_bound_by_is_shown_where_it_was_asked() -> None:
+    plan = made_up_plan()
+    for samples in (0, 3):
+        result = made_up_result(plan, samples)
+        found = " ".join(Page(html_page(plan, timing=timing_record(result, bound=BOUND))).texts)
+        assert "Bound by" in found
+        assert BOUND["advice"] in found
+        assert "half resolution 27 %" in found
+        assert "Bound by" not in " ".join(Page(html_page(plan, timing=timing_record(result))).texts)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,14 @@ from jsonschema import Draft202012Validator
 from pydantic import ValidationError
 
 from rendergraph.document.load import load_document
+from rendergraph.document.messages import diagnose
 from rendergraph.plan.plan import PlanOptions
 from rendergraph.plan.validate import plan_without_scene
 from rendergraph.report.memory_advice import advise
 from rendergraph.report.record_schemas import RECORDS, record_schema, schema_text, write_record_schemas
 from rendergraph.report.resources import resources_record
 from rendergraph.report.timing import timing_record
+from tests.report.made_up import BOUND
 from tests.report.made_up_accuracy import made_up_accuracy
 from tests.report.made_up_attribution import made_up_attribution
 from tests.report.made_up_stress import made_up_stress
@@ -47,6 +50,8 @@ def records() -> Iterator[tuple[str, dict[str, Any]]]:
     yield "attribution", made_up_attribution()
     for samples in (0, 1, 3):
         yield "timing", json.loads(json.dumps(timing_record(result(samples), "title")))
+    heard = diagnose("RG507", None, where="", what="", detail="undefined", scope="", resource="hdr")
+    yield "timing", json.loads(json.dumps(timing_record(replace(result(2), warnings=(heard,)), "title", BOUND)))
 
 
 VALIDATORS = {name: Draft202012Validator(record_schema(name)) for name in RECORDS}
@@ -130,7 +135,7 @@ def at(record: Any, path: tuple[Any, ...]) -> Any:
 
 
 OPEN = {"evidence", "proof"}
-OPTIONAL = {"slot", "offset", "view_class"}
+OPTIONAL = {"slot", "offset", "view_class", "half_resolution", "no_readback"}
 FREE = {"metrics", "inputs"}  # mappings with any keys
 SIGNED = {"value", "metrics", "judged", "true", "inputs", "removed"}
 

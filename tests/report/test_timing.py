@@ -1,15 +1,20 @@
 """The timing record's arithmetic, on times made up for it."""
 
+import io
 from dataclasses import replace
+from typing import Any
 
 import pytest
+from rich.console import Console
 
 from rendergraph.document.load import load_document
+from rendergraph.document.messages import diagnose
 from rendergraph.plan.plan import PlanOptions
 from rendergraph.plan.validate import plan_without_scene
 from rendergraph.report.tables import mebibytes, timing_table
 from rendergraph.report.timing import driver_version, spread, thread_count, timing_record
 from rendergraph.run.result import DeviceFacts, FrameResult, RunTimes, SteadyState, StepCounters, StepTimes
+from tests.report.made_up import BOUND
 
 
 def result(samples: int) -> FrameResult:
@@ -115,3 +120,22 @@ def test_threads_are_those_that_rasterise(monkeypatch: pytest.MonkeyPatch) -> No
     assert thread_count("llvmpipe (LLVM 15)") == 1
     monkeypatch.delenv("LP_NUM_THREADS")
     assert thread_count("llvmpipe (LLVM 15)") == thread_count("other") >= 1
+
+
+def test_what_the_driver_warned_of_is_in_the_record_and_other_warnings_are_not() -> None:
+    heard = diagnose("RG507", None, where=" in a.b", what="", detail="undefined", scope="a.b", resource="hdr")
+    other = diagnose("RG582", side="A", frames=3)
+    record = timing_record(replace(result(1), warnings=(other, heard)))
+    assert record["driver_warnings"] == [{"text": "undefined", "subpass": "a.b", "resource": "hdr"}]
+    assert timing_record(result(1))["driver_warnings"] == []
+
+
+@pytest.mark.parametrize("samples", [0, 3])
+def test_the_table_says_what_the_frame_is_bound_by(samples: int) -> None:
+    def printed(record: dict[str, Any]) -> str:
+        console = Console(width=200, record=True, file=io.StringIO())
+        console.print(timing_table(record))
+        return console.export_text()
+
+    assert "bound by" not in printed(timing_record(result(samples)))
+    assert "the frame is bound by gpu (100 % of rounds agree)" in printed(timing_record(result(samples), bound=BOUND))

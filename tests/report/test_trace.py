@@ -147,3 +147,11 @@ def test_host_and_device_are_on_one_clock(device: Device, kind: Any) -> None:
     assert clock.starts[1] == sorted(clock.starts[1])
     assert clock.starts[0][-1] < clock.starts[1][0]
     assert all(abs(a - b) < 50 * MS for a, b in zip(submitted, clock.starts[1], strict=True))
+
+
+def test_no_thread_is_taken_for_a_main_thread_and_none_is_named_twice() -> None:
+    """A thread numbered as its process is marked and moved to the front; one number for two names shows one of them."""
+    record = trace_record(made_up_result(made_up_plan()))
+    threads = [(e["pid"], e["tid"]) for e in record["traceEvents"] if e["name"] == "thread_name"]
+    assert len({thread for _, thread in threads}) == len(threads)
+    assert not {process for process, _ in threads} & {thread for _, thread in threads}

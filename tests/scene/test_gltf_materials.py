@@ -78,6 +78,8 @@ def test_every_slot_and_its_encoding(tiny):
     assert features.normal_mapped
     assert features.occlusion_mapped
     assert features.texture_arrays == 2
+    assert features.second_uv
+    assert (features.texture_wraps, features.texture_transforms, features.vertex_colors) == (False, False, False)
 
 
 def test_sampler_wrap_and_nearest_note(tiny):
@@ -85,13 +87,16 @@ def test_sampler_wrap_and_nearest_note(tiny):
     texture = {"index": tiny.texture(sampler=sampler)}
     scene, material = material_of(tiny, pbrMetallicRoughness={"baseColorTexture": texture})
     assert material.base_color_texture.wrap == (Wrap.CLAMP, Wrap.MIRROR)
+    assert scene.features().texture_wraps
     assert len(scene.notes) == 1
 
 
 def test_texture_transform_and_its_uv_set(tiny):
     transform = {"offset": [0.1, 0.2], "scale": [2, 3], "rotation": 0.5, "texCoord": 1}
     texture = {"index": tiny.texture(), "texCoord": 0, "extensions": {"KHR_texture_transform": transform}}
-    use = material_of(tiny, pbrMetallicRoughness={"baseColorTexture": texture})[1].base_color_texture
+    scene, material = material_of(tiny, pbrMetallicRoughness={"baseColorTexture": texture})
+    use = material.base_color_texture
+    assert scene.features().texture_transforms
     assert (use.offset, use.scale, use.rotation, use.uv_set) == ((0.1, 0.2), (2.0, 3.0), 0.5, 1)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,6 +27,7 @@ from rendergraph.scene.gpu_layout import (
     place_textures,
 )
 from rendergraph.scene.scene import Alpha, Image, Instance, Light, Material, Mesh, Scene, TextureUse, Wrap
+from rendergraph.scene.texture_arrays import NO_ARRAY
 
 # ---------------------------------------------------------------- layouts
 
@@ -202,13 +204,17 @@ def test_lights():
 EYE = (0.0, 0.0, 0.0)
 
 
+def runs_of(scene, eye):
+    return draw_runs(scene, eye, place_textures(scene))
+
+
 def order(runs):
     return [int(i) for run in runs for i in run.commands["base_instance"]]
 
 
 def test_commands():
     scene = scene_of(at(0), (at(1), 1), materials=[Material(), Material()])
-    runs = draw_runs(scene, EYE)
+    runs = runs_of(scene, EYE)
     assert tuple(runs) == QUEUES
     (run,) = runs["opaque"]
     assert [tuple(c) for c in run.commands.tolist()] == [(3, 1, 0, 0, 0), (3, 1, 3, 10, 1)]
@@ -218,28 +224,30 @@ def test_queues_and_order():
     """Opaque and masked front to back, blended back to front, by distance to the centre of the bounds."""
     materials = [Material(alpha=alpha) for alpha in Alpha]
     places = [(at(x), kind) for kind in range(3) for x in (9.0, 1.0, 5.0)]
-    runs = draw_runs(scene_of(*places, materials=materials), EYE)
+    runs = runs_of(scene_of(*places, materials=materials), EYE)
     assert order(runs["opaque"]) == [1, 2, 0]
     assert order(runs["masked"]) == [4, 5, 3]
     assert order(runs["blended"]) == [6, 8, 7]
-    assert order(draw_runs(scene_of(*places, materials=materials), (20.0, 0.0, 0.0))["opaque"]) == [0, 2, 1]
+    assert order(runs_of(scene_of(*places, materials=materials), (20.0, 0.0, 0.0))["opaque"]) == [0, 2, 1]
 
 
 def test_ties_keep_the_scenes_order():
-    runs = draw_runs(scene_of(*[at(1)] * 20), EYE)
+    runs = runs_of(scene_of(*[at(1)] * 20), EYE)
     assert order(runs["opaque"]) == list(range(20))
 
 
 def test_runs_of_equal_state():
-    """Opaque instances are grouped by sidedness and winding; blended ones keep their order and are cut into runs."""
+    """Opaque instances are grouped by sidedness and winding, the group of the nearest first; blended ones keep their
+    order and are cut into runs.
+    """
     materials = [Material(), Material(double_sided=True)]
     places = [(at(1), 0), (at(2), 1), (at(3), 0), (at(-4, scale=(-1, 1, 1)), 0)]
-    runs = draw_runs(scene_of(*places, materials=materials), EYE)["opaque"]
+    runs = runs_of(scene_of(*places, materials=materials), EYE)["opaque"]
     assert [(r.double_sided, r.mirrored, order([r])) for r in runs] == [
-        (False, False, [0, 2]), (False, True, [3]), (True, False, [1]),
+        (False, False, [0, 2]), (True, False, [1]), (False, True, [3]),
     ]  # fmt: skip
     blended = [Material(alpha=Alpha.BLENDED, double_sided=side) for side in (False, True)]
-    runs = draw_runs(scene_of(*places, materials=blended), EYE)["blended"]
+    runs = runs_of(scene_of(*places, materials=blended), EYE)["blended"]
     assert order(runs) == [3, 2, 1, 0]
     assert [(r.double_sided, r.mirrored) for r in runs] == [
         (False, True),
@@ -249,8 +257,29 @@ def test_runs_of_equal_state():
     ]
 
 
+def test_runs_have_one_set_of_texture_arrays():
+    """Images 0 and 2 share an array; a material that fills another slot, or none, is a set of its own."""
+    images = [Image(np.zeros((side, side, 4), np.uint8), True) for side in (8, 16, 8)]
+    colour = [Material(base_color_texture=TextureUse(image)) for image in range(3)]
+    emission = Material(emissive_texture=TextureUse(0))
+    materials = [*colour, emission, Material()]
+    places = [(at(x), material) for x, material in ((5, 0), (1, 1), (2, 2), (3, 3), (4, 4))]
+    runs = runs_of(scene_of(*places, materials=materials, images=images), EYE)["opaque"]
+    no = NO_ARRAY
+    assert [(r.arrays, order([r])) for r in runs] == [
+        ((1, no, no, no, no), [1]),
+        ((0, no, no, no, no), [2, 0]),
+        ((no, no, no, no, 0), [3]),
+        ((no, no, no, no, no), [4]),
+    ]
+    blended = [replace(material, alpha=Alpha.BLENDED) for material in materials]
+    runs = runs_of(scene_of(*places, materials=blended, images=images), EYE)["blended"]
+    assert order(runs) == [0, 4, 3, 2, 1]
+    assert [r.arrays[0] for r in runs] == [0, no, no, 0, 1]
+
+
 def test_empty_scene_and_empty_meshes_draw_nothing():
-    assert draw_runs(scene_of(), EYE) == {queue: [] for queue in QUEUES}
+    assert runs_of(scene_of(), EYE) == {queue: [] for queue in QUEUES}
     scene = scene_of(at(0))
     scene.meshes[0] = Mesh(0, 0, 0, 0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    assert draw_runs(scene, EYE)["opaque"] == []
+    assert runs_of(scene, EYE)["opaque"] == []

@@ -41,6 +41,13 @@ ROWS: Final[dict[str, Message]] = {
         "device {index} was asked for, but device {open} is already open in this process",
         "close it first, or use another process: one OpenGL context per process",
     ),
+    "RG507": Message(
+        "warning",
+        "the driver warns of undefined behaviour{where}{what}: {detail}",
+        "what this pass draws may differ on another driver: check its sizes, formats and bindings with `rg plan`",
+        "Said once for every pass and resource that it concerns, and kept in the timing record. The driver goes on, so "
+        "the image may look right on this machine.",
+    ),
     "RG510": Message("error", "shader file {file} cannot be read: {detail}", "{hint}"),
     "RG511": Message(
         "error",

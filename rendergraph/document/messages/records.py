@@ -31,9 +31,11 @@ ROWS: Final[dict[str, Message]] = {
     ),
     "RG704": Message(
         "error",
-        "{who}the frame makes {found} draws, its budget is {limit}: pass '{name}' makes the most, {most}",
-        "batch or cull in '{name}', or raise draws",
-        "Each draw of a multi-draw counts, as in the counter `draws` of timing.json. It is exact.",
+        "{who}the frame makes {found} draws (in {calls} draw calls), its budget is {limit}: pass '{name}' makes the "
+        "most, {most}",
+        "instance, merge or cull what '{name}' draws, or raise draws",
+        "Each draw of a multi-draw counts, as in the counter `draws` of timing.json; its `draw_calls` counts the calls "
+        "that make them. Both are exact.",
     ),
     "RG705": Message(
         "warning",

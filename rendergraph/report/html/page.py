@@ -17,6 +17,7 @@ from rendergraph.document.whole_files import whole_file
 from rendergraph.plan.barriers import BITS
 from rendergraph.plan.explain import all_decisions, explain_decision
 from rendergraph.plan.plan import Barrier, Plan
+from rendergraph.report.bound_text import agreement, evidence
 from rendergraph.report.drawing import drawing, svg
 from rendergraph.report.html.memory import lifetime_chart
 from rendergraph.report.html.targets import TargetGallery, target_entries
@@ -70,6 +71,8 @@ def html_page(
             decisions=list(_decisions(plan)),
             warnings=warnings,
             accuracy=accuracy,
+            agreement=agreement,
+            evidence=evidence,
         )
     )
     return text
