@@ -17,6 +17,8 @@ ANY_FORMAT = ("rgba8", *sorted(FORMATS.keys() - {"rgba8"}))
 
 
 EXTREMES = (
+    Extreme("nan_texels", "Bits are kept.", skips={"finite": "a copy keeps what it is given"}),
+    Extreme("inf_texels", "Bits are kept.", skips={"finite": "a copy keeps what it is given"}),
     Extreme("one_texel", "A source of one texel and one level.",
             ("resources.tiles.fixed=[1, 1]", "resources.pyramid.mips=1", "passes.chain.set.mips=false")),
     Extreme("odd_size", "Levels whose filter OpenGL does not say.", ("resources.tiles.fixed=[37, 13]",)),

@@ -170,7 +170,10 @@ def shade(
         total = total + irradiance * brdf_cosine(normal, view, towards, base_color, roughness, metallic)
     for light in scene.lights:
         to_light = np.array(light.position) - position
-        distance, direction = np.sqrt(dot(to_light, to_light)), normalize(to_light)
+        distance = np.sqrt(dot(to_light, to_light))
+        if np.all(distance >= light.radius):
+            continue  # exactly nothing arrives: of very many lights, most reach none of these points
+        direction = normalize(to_light)
         strength = attenuation(distance, np.full_like(distance, light.radius))
         if light.outer is not None:
             axis = normalize(np.array(light.axis, dtype=np.float64))

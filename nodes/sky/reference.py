@@ -107,7 +107,9 @@ def sky(
         above = (1 - day) * above + day * preetham(directions, sun, turbidity) * strength / sun_illuminance
         if sun_radius > 0.0:
             angle = np.arctan2(np.linalg.norm(np.cross(directions, sun), axis=-1), directions @ sun)
-            covered = np.clip((sun_radius - angle) / pixel + 0.5, 0.0, 1.0) * (directions[..., 1] >= 0.0)
+            radius = max(sun_radius, pixel / 2)
+            covered = np.clip((radius - angle) / pixel + 0.5, 0.0, 1.0) * (directions[..., 1] >= 0.0)
+            covered *= sun_radius**2 / (radius**2 + pixel**2 / 12)  # the ramp's own share of the light
             disc = covered[..., None] * irradiance / (math.pi * math.sin(sun_radius) ** 2)
     share = smoothstep(-horizon, horizon, directions[..., 1])[..., None]
     ground = np.array(light.ambient_ground)
@@ -228,6 +230,6 @@ def _on_the_discs_edge(params: SkyParams, rays: F64, light: Light, pixel: float)
     """Pixels of which the disc covers hardly anything, or that lie on the horizon, which cuts it off."""
     sun = np.array(light.sun)
     angle = np.arctan2(np.linalg.norm(np.cross(rays, sun), axis=-1), rays @ sun)
-    covered = (math.radians(params.sun_radius) - angle) / pixel + 0.5
+    covered = (max(math.radians(params.sun_radius), pixel / 2) - angle) / pixel + 0.5
     level = (np.abs(rays[..., 1]) < 1e-6) & (covered > 0.0)
     return np.asarray(((np.abs(covered) < LEAST_COVERED) | level) & (params.sun_radius > 0.0))

@@ -62,6 +62,8 @@ def _judge(axis: QualityAxis, lines: Sequence[Line]) -> Iterator[Shortfall | Not
         if line.ideal and line.shape in ("rises", "bumpy"):
             yield Shortfall(line.shape, f"{axis.name}: {_told(axis, line)} does not fall all along")
     falling = [line for line in lines if line.shape == "falls"]
+    if any(line.ideal and line.shape in ("rises", "bumpy") for line in lines):
+        return
     if not falling and lines and all(line.shape in ("flat", "unknown") for line in lines):
         shown = "; ".join(_told(axis, line) for line in lines)
         yield Shortfall("flat", f"{axis.name} changes no error: {shown}")

@@ -56,7 +56,7 @@ ROWS: Final[dict[str, Message]] = {
         "error",
         "no such error: {problem}",
         "{hint}",
-        "`--error PASS` or `--error PASS.MEASURE` names a measure of the node's reference, which `rg nodes NODE` lists. "
+        "`--error PASS` or `--error PASS.MEASURE` names a measure of the node's reference (`rg nodes NODE`). "
         "`--error image` or `--error image:METRIC` compares the final image with that of the most accurate settings.",
     ),
     "RG759": Message(
