@@ -30,7 +30,7 @@ def conform(
     ] = None,
     format: FormatOption = Format.TEXT,
 ) -> None:
-    """Demand of nodes what makes one done: page, graph, reference, knobs, extremes, plan; exit 1 where one is missed."""
+    """Demand of nodes what makes one done: graph, page, reference, knobs, extremes; exit 1 where one is missed."""
     from rendergraph.cli.console import progress_bar, report, write_json, write_table
     from rendergraph.conformance import conform as suite
     from rendergraph.report.conformance import conformance_record, conformance_table

@@ -60,6 +60,7 @@ class DeferredLighting(Node[ShadowParams]):
     )  # fmt: skip
     bounds = {"color": (0.0, 65504.0)}
     extremes = EXTREMES
+    accuracy_axes = {"resources.hdr.format=r11g11b10f|rgba16f|rgba32f": "color"}
 
     def build(self, b: Builder) -> None:
         """One full-screen triangle."""

@@ -77,6 +77,10 @@ class ForwardShading(Node[ForwardShadingParams]):
     )  # fmt: skip
     bounds = {"color": (0.0, 65504.0), "depth": (0.0, 1.0)}
     extremes = EXTREMES
+    accuracy_axes = {
+        "resources.hdr.format=r11g11b10f|rgba16f|rgba32f": "color",
+        "resources.shadow.fixed=[256, 256]|[1024, 1024]": "traced",
+    }
 
     def modifies(self, port: str) -> bool:
         """The transparent queue alone is blended over what is there."""

@@ -51,8 +51,8 @@ def judge(run: PassRun) -> Mapping[str, Truth]:
         layers, clear = blended_layers(seen)
         covered = np.zeros(seen.hit.size, dtype=bool)
         covered[layers.pixel] = True
-        # In front of what is not known, so neither is what is behind.
-        known = known & clear & (~covered.reshape(clear.shape) | seen.known)
+        # What is in front of a solid surface that is not known is not known either, nor whether anything is.
+        known = known & clear & seen.known
         drawn |= covered.reshape(clear.shape)
     value, sure = _image(run, seen, before, layers, traced=False)
     ideal, _ = _image(run, seen, before, layers, traced=True)

@@ -72,10 +72,10 @@ class Gbuffer(Node[GbufferParams]):
         measures={
             "depth": Measure(Quantity.DEPTH, "p99_ulp", 32.0, "Stored depth of the nearest surface.", "depth", "ulp"),
             "distance": Measure(
-                Quantity.SCALAR, "max_relative", 2e-6, "View-space z that the stored depth stands for, relative."
+                Quantity.SCALAR, "p99_relative", 2e-6, "View-space z that the stored depth stands for, relative."
             ),
             "normal": Measure(
-                Quantity.NORMAL, "max", NORMAL_ERROR["rg16_snorm"], "Angle to the shading normal.", "normal", "degrees"
+                Quantity.NORMAL, "p99", NORMAL_ERROR["rg16_snorm"], "Angle to the shading normal.", "normal", "degrees"
             ),
             "base_color": Measure(Quantity.SHARE, "max", 0.0131, "Linear base colour.", "base_color"),
             "material": Measure(
@@ -90,6 +90,11 @@ class Gbuffer(Node[GbufferParams]):
         "emissive": (0.0, 65024.0),
     }  # fmt: skip
     extremes = EXTREMES
+    accuracy_axes = {
+        "resources.normal.format=rg8|rgb10_a2|rg16_snorm": "normal",
+        "resources.depth.format=d16|d24|d32f": "distance",
+        "resources.base_color.format=rgba8|rgba16": "base_color",
+    }
 
     def build(self, b: Builder) -> None:
         """Optional prepass, then the opaque queue, then the alpha-tested one; at equal depth the last draw wins."""

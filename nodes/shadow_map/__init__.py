@@ -100,6 +100,7 @@ class ShadowMap(Node[ShadowMapParams]):
     )  # fmt: skip
     bounds = {"map": (0.0, 1.0)}
     extremes = EXTREMES
+    accuracy_axes = {"resources.shadow.fixed=[256, 256]|[512, 512]|[1024, 1024]": "visibility"}
 
     def build(self, b: Builder) -> None:
         """Fit the cascades on the device, then draw all of them at once, one instance of each draw a layer."""

@@ -53,6 +53,7 @@ class SkyParams(Params):
         unit="klx",
         gt=0,
         le=1000,
+        accurate="neither",
     )
     sun_radius: float = knob(
         0.2665, "Angular radius of the sun's disc; 0 for none.", unit="deg", ge=0.0, le=10.0, accurate="neither"

@@ -82,6 +82,7 @@ class Tonemap(Node[TonemapParams]):
     )  # fmt: skip
     bounds = {"color": (0.0, 1.0)}
     extremes = EXTREMES
+    accuracy_axes = {"resources.aces={format: rgba8}|{format: rgb10_a2}|{format: rgba16}": "display"}
 
     def build(self, b: Builder) -> None:
         """One full-screen draw."""

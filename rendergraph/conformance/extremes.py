@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
 
 from rendergraph.conformance.demand import Note, Shortfall
 from rendergraph.conformance.subject import Subject
 from rendergraph.measure.stress.outcome import BROKEN
-from rendergraph.measure.stress.stress import StressOptions, StressReport, stress
 
 
 def check_extremes(subject: Subject) -> Iterator[Shortfall | Note]:
@@ -22,7 +20,7 @@ def check_extremes(subject: Subject) -> Iterator[Shortfall | Note]:
     if unbounded and not node.exact:
         text = f"{', '.join(unbounded)}: declare in bounds the least and largest value that the output may ever hold"
         yield Shortfall("unbounded", text)
-    report = stressed(subject.name, subject.device_index, subject.isolate)
+    report = subject.stressed
     for case in report.failed:
         if case.state in BROKEN:
             yield Shortfall(case.state, f"{case.name}: {case.code} {case.text}".strip())
@@ -31,9 +29,3 @@ def check_extremes(subject: Subject) -> Iterator[Shortfall | Note]:
                 yield Shortfall(f"not_{failure.check}", f"{case.name}: {entry.name}: {failure.text}")
     tried = [case for case in report.cases if case.state in ("ran", "refused")]
     yield Note(f"{len(tried)} extremes tried, {len(report.cases) - len(tried)} do not apply to its graph")
-
-
-@cache
-def stressed(name: str, device: int | None, isolate: bool) -> StressReport:
-    """The stress report of a node, made once."""
-    return stress(name, StressOptions(device=device, isolate=isolate))

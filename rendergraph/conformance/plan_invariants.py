@@ -45,7 +45,7 @@ def check_plan(subject: Subject) -> Iterator[Shortfall | Note]:
 def facts(plan: Plan) -> tuple[Any, ...]:
     """What must not change: order, what is left out, memory, barriers."""
     order = tuple(replace(step, position=None) for step in plan.order)
-    slots = {name: slot for name, slot in sorted(plan.slot_of.items())}
+    slots = dict(sorted(plan.slot_of.items()))
     return order, sorted(plan.culled), slots, repr(plan.barriers), plan.totals
 
 

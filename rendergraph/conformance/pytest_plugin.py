@@ -80,11 +80,11 @@ class DemandItem(pytest.Item):
         if verdict.status in ("exempt", "not_tried"):
             pytest.skip(f"{verdict.status.replace('_', ' ')}: {verdict.reason}")
         if verdict.status == "missed":
-            raise NodeMissesDemand("\n".join(f"{verdict.code} {one.reason}: {one.text}" for one in verdict.shortfalls))
+            raise DemandMissedError("\n".join(f"{verdict.code} {one.reason}: {one.text}" for one in verdict.shortfalls))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """The shortfalls alone: a traceback through the suite tells a node's author nothing."""
-        if isinstance(excinfo.value, NodeMissesDemand):
+        if isinstance(excinfo.value, DemandMissedError):
             return f"{self.subject.name} misses the demand `{self.demand.name}`: {self.demand.help}\n{excinfo.value}"
         return super().repr_failure(excinfo, style)
 
@@ -93,5 +93,5 @@ class DemandItem(pytest.Item):
         return self.path, None, f"{self.subject.name}: {self.demand.name}"
 
 
-class NodeMissesDemand(Exception):
+class DemandMissedError(Exception):
     """A demand that is not met, with its shortfalls."""

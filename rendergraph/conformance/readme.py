@@ -1,10 +1,9 @@
-"""Demand `readme`: a page that says what, when and when not, what it costs, how accurate it is, and whose idea it was."""
+"""Demand `readme`: a page that says what, when and when not, its cost and accuracy, and whose idea it was."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Final
 
 from rendergraph.conformance.demand import Shortfall
@@ -67,8 +66,3 @@ def sections(text: str) -> dict[str, str]:
         end = next((other.start() for other in follows), len(plain))
         found[name] = plain[lead.end() : end].strip()
     return found
-
-
-def readme_of(folder: Path) -> str:
-    """The page's text."""
-    return (folder / "README.md").read_text(encoding="utf-8")

@@ -15,6 +15,7 @@ from rendergraph.run.plan_document import PlannedDocument, load_document_scene, 
 
 if TYPE_CHECKING:
     from rendergraph.device.context import Device
+    from rendergraph.measure.stress.stress import StressReport
     from rendergraph.measure.truth.accuracy import PassAccuracy
     from rendergraph.measure.truth.cache import TruthCache
 
@@ -48,26 +49,28 @@ class Subject:
     @cached_property
     def document(self) -> Document:
         """The graph with targets of a fixed size as they are, procedural scenes at their least detail."""
-        return self.at_size()
+        return self.with_overrides()
 
     @cached_property
     def shrunk(self) -> Document:
         """The graph with targets of a fixed size shrunk too: for what does not hang on sizes."""
         return load_target(self.target)
 
-    def at_size(self, *overrides: str) -> Document:
+    def with_overrides(self, *overrides: str) -> Document:
         """The graph under ``--set`` arguments. Raises RenderGraphError for its mistakes and theirs."""
         model = load_document(self.target.file).model
         least = model.scene is not None and "detail" not in model.scene.model_fields_set
         return load_document(self.target.file, (*(("scene.detail=0",) if least else ()), *overrides))
 
-    def planned(self, document: Document, options: PlanOptions | None = None) -> PlannedDocument:
+    def planned(
+        self, document: Document, options: PlanOptions | None = None, size: tuple[int, int] = SIZE
+    ) -> PlannedDocument:
         """A document's plan at the size of the tests."""
         key = repr((document.model.scene, document.model.frame.seed))
         if key not in self._scenes:
             self._scenes[key] = load_document_scene(document, None)
         frames = min(MOST_FRAMES, document.model.frame.count)
-        return plan_for_scene(document, self._scenes[key], options or PlanOptions(), size=SIZE, frames=frames)
+        return plan_for_scene(document, self._scenes[key], options or PlanOptions(), size=size, frames=frames)
 
     @cached_property
     def passes(self) -> tuple[str, ...]:
@@ -88,17 +91,24 @@ class Subject:
 
         return open_cache()
 
-    def judge(self, document: Document) -> tuple[PassAccuracy, ...]:
+    def judge(self, document: Document, size: tuple[int, int] = SIZE) -> tuple[PassAccuracy, ...]:
         """The node's passes, judged in the graph's last frame of the tests."""
         from rendergraph.measure.truth.accuracy import judge_graph
 
-        planned = self.planned(document)
+        planned = self.planned(document, size=size)
         return judge_graph(document, planned, self.device, self.passes, cache=self.cache, flip=False)
 
     @cached_property
     def judged(self) -> tuple[PassAccuracy, ...]:
         """At the graph's own settings."""
         return self.judge(self.document)
+
+    @cached_property
+    def stressed(self) -> StressReport:
+        """What came of every extreme."""
+        from rendergraph.measure.stress.stress import StressOptions, stress
+
+        return stress(self.name, StressOptions(device=self.device_index, isolate=self.isolate))
 
     @cached_property
     def graph_problem(self) -> str:

@@ -46,9 +46,10 @@ class Node(ABC, Generic[ParamsT]):
     ``open_ports`` nodes take any port name, for users' own shaders. ``needs_scene`` nodes draw geometry or read lights.
     ``reference`` names the truth that its outputs are held against, ``exact`` nodes have none to approximate: their
     outputs equal it. ``bounds`` are the least and largest value that an output port may ever hold, and ``extremes`` the
-    cases beyond the common ones (measure/stress) that it must survive. ``accuracy_axes`` are what of the node's own graph
-    trades accuracy beside its knobs (``resources.map.fixed=[64, 64]|[256, 256]``, as ``rg sweep --over`` takes it), and
-    ``exempt`` are demands of the conformance suite that it does not meet, each with the reason, which reports show.
+    cases beyond the common ones (measure/stress) that it must survive. ``accuracy_axes`` are what of the node's own
+    graph trades accuracy beside its knobs, as ``rg sweep --over`` takes it (``resources.hdr.format=rgba16f|rgba32f``),
+    with the measure whose error it lowers. ``exempt`` are demands of the conformance suite that the node does not meet,
+    each with the reason, which reports show.
     """
 
     name: ClassVar[str] = ""  # set by discovery to the folder's name
@@ -62,7 +63,7 @@ class Node(ABC, Generic[ParamsT]):
     exact: ClassVar[bool] = False
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
     extremes: ClassVar[tuple[Extreme, ...]] = ()
-    accuracy_axes: ClassVar[tuple[str, ...]] = ()
+    accuracy_axes: ClassVar[Mapping[str, str]] = {}
     exempt: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, params: ParamsT) -> None:

@@ -20,9 +20,7 @@ SENTENCES: Final[Mapping[tuple[str, str], tuple[str, ...]]] = {
     ("expand", "kept_for_history"): ("{subject} is kept to the next frame, where {history} shows it",),
     ("expand", "kept_for_output"): ("{subject} is kept to the end of the frame, to be written to {file}",),
     ("specialise", "scene_lacks_feature"): ("{subject} is left out or simplified: the scene has no {feature}",),
-    ("specialise", "none_in_view"): (
-        "{subject} is left out or simplified: nothing {feature} comes into view",
-    ),
+    ("specialise", "none_in_view"): ("{subject} is left out or simplified: nothing {feature} comes into view",),
     ("specialise", "no_light_reaches_the_view"): (
         "{subject} leaves out local lights: none of the {lights} reaches what is in view",
     ),
@@ -36,9 +34,7 @@ SENTENCES: Final[Mapping[tuple[str, str], tuple[str, ...]]] = {
     ("specialise", "format_narrowed"): (
         "{subject} is {to} in place of {from}, without loss: {by} has nothing more to put into it, {saved} bytes less",
     ),
-    ("specialise", "pass_left_out"): (
-        "{subject} is left out whole: it has nothing to do in this scene ({because})",
-    ),
+    ("specialise", "pass_left_out"): ("{subject} is left out whole: it has nothing to do in this scene ({because})",),
     ("cull", "writes_nothing"): ("{subject} is culled: it writes nothing",),
     ("cull", "nothing_reads_it"): ("{subject} is culled: nothing reads {writes}, and it is no output",),
     ("cull", "overwritten_before_read"): (

@@ -11,10 +11,11 @@ from rich.text import Text
 
 import rendergraph
 from rendergraph.conformance.conform import ConformReport
+from rendergraph.conformance.demand import Status
 from rendergraph.conformance.demands import DEMANDS
 
 SCHEMA: Final = "rendergraph.conformance/1"
-_SHORT: Final = {"met": "yes", "missed": "NO", "exempt": "exempt", "not_tried": "-"}
+_SHORT: Final[dict[Status, str]] = {"met": "yes", "missed": "NO", "exempt": "exempt", "not_tried": "-"}
 
 
 def conformance_record(report: ConformReport) -> dict[str, Any]:
@@ -45,7 +46,5 @@ def conformance_table(report: ConformReport) -> RenderableType:
     for node in report.nodes:
         own = [verdict for verdict in report.verdicts if verdict.node == node]
         table.add_row(node, *(_SHORT[v.status] for v in own), f"{sum(v.seconds for v in own):.1f}")
-    told = [
-        Text(f"{v.node} {v.demand}: {v.status.replace('_', ' ')}: {v.reason}") for v in report.verdicts if v.reason
-    ]
+    told = [Text(f"{v.node} {v.demand}: {v.status.replace('_', ' ')}: {v.reason}") for v in report.verdicts if v.reason]
     return Group(table, *told)

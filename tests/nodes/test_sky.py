@@ -208,8 +208,8 @@ def test_unspecialised_run_gives_the_same_image(device: Device, hardware: Hardwa
 @pytest.mark.gpu
 @pytest.mark.parametrize(("radius", "within"), [(6.0, 0.01), (0.7, 0.06), (0.2665, 0.12)])
 def test_the_disc_carries_the_suns_irradiance(device: Device, tmp_path: Path, radius: float, within: float) -> None:
-    # Towards a low sun: the sum of radiance times solid angle. A disc of 6 degrees spans 9 pixels; the sun's own is half
-    # a pixel wide, and what the pixel centres sample of its ramp depends on where it lies between them.
+    # Towards a low sun: the sum of radiance times solid angle. A disc of 6 degrees spans 9 pixels; the sun's own is
+    # half a pixel wide, and what the pixel centres sample of its ramp depends on where it lies between them.
     sun = (0.0, 0.2, -1.0)
     with_disc = drawn(tmp_path, sun, (0.0, 0.0, 0.0), {"sun_radius": radius})[..., :3]
     without = drawn(tmp_path, sun, (0.0, 0.0, 0.0), {"sun_radius": 0.0})[..., :3]

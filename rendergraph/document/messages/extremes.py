@@ -25,9 +25,7 @@ ROWS: Final[dict[str, Message]] = {
     ),
     "RG768": Message("error", "'{name}' is neither a node, nor a shipped graph, nor a file", "{hint}"),
     "RG769": Message("error", "there is no extreme '{name}' here", "{hint}; `rg stress TARGET --list` lists them"),
-    "RG770": Message(
-        "error", "no process can try the extremes: {reason}", "try `--no-isolate`, and see `rg doctor`"
-    ),
+    "RG770": Message("error", "no process can try the extremes: {reason}", "try `--no-isolate`, and see `rg doctor`"),
     "RG771": Message(
         "error",
         "the node '{name}' has no graph of its own to be tried on",
