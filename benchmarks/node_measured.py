@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from rendergraph.conformance.knobs import SIZE, Line, counting, swept
+from rendergraph.conformance.knobs import MORE_SIZES, SIZE, Line, settled
 from rendergraph.conformance.quality_axes import QualityAxis, quality_axes
 from rendergraph.conformance.subject import Subject
 from rendergraph.measure.stress.outcome import CaseOutcome, PassOutcome
@@ -27,7 +27,7 @@ def measured(name: str, folder: Path) -> str:
 
 
 def _number(value: float | None, unit: str = "") -> str:
-    text = "0" if value is None else f"{value:.2g}"
+    text = "0" if value is None else f"{value:.3g}"
     return f"{text} {unit}".strip()
 
 
@@ -43,7 +43,7 @@ def _accuracy(subject: Subject) -> Iterator[str]:
         for one in entry.judgements:
             known = one.verdict != "cannot_judge"
             error = _number(one.value, one.unit) if known else "not known in this graph"
-            share = f"{100 * (1 - one.masked):.2g} %" if known else "0"
+            share = f"{100 * (1 - one.masked):.3g} %" if known else "0"
             against = "the ideal" if one.ideal else "the same algorithm"
             rows.append(
                 f"| `{entry.name}` | `{one.measure}` | {one.metric} | {error} | {_number(one.tolerance, one.unit)} "
@@ -61,11 +61,14 @@ def _along(subject: Subject) -> Iterator[str]:
         "|---|---|---|---|---|",
     ]
     for axis in axes:
-        for line in counting(axis, swept(subject, axis)):
+        for line in settled(subject, axis):
             if line.shape not in ("flat", "unknown"):
                 rows.append(_row(axis, line))
     yield "### What buys it"
-    yield "Errors along each quality knob, and along formats and sizes of the graph that trade accuracy."
+    yield (
+        "Errors along each quality knob, and along formats and sizes of the graph that trade accuracy; where one image "
+        f"does not show which way they go, the mean over {1 + len(MORE_SIZES)} sizes of the frame."
+    )
     yield "\n".join(rows)
 
 
@@ -81,12 +84,14 @@ def _front(subject: Subject, folder: Path) -> Iterator[str]:
     axes = list(quality_axes(subject))
     if not axes:
         return
-    group = [axis for axis in axes if axis.measure == axes[0].measure]
-    lines = [line for axis in group for line in counting(axis, swept(subject, axis)) if line.shape != "unknown"]
+    measures = subject.node.reference.measures if subject.node.reference else {}
+    ideal = next((key for key, measure in measures.items() if measure.ideal), "")
+    group = [axis for axis in axes if (axis.measure or ideal) == (axes[0].measure or ideal)]
+    lines = [line for axis in group for line in settled(subject, axis) if line.shape != "unknown"]
     falling = next((line for line in lines if line.shape == "falls"), lines[0])
     over = [_over(axis, alone=len(group) == 1) for axis in group]
     detail = [o for o in ("scene.detail=0",) if subject.document.model.scene is not None]
-    job = new_job(str(subject.target.file), overrides=tuple(detail), size=PLOT_SIZE)
+    job = new_job(str(subject.target.file), overrides=tuple(detail), size=PLOT_SIZE, frames=3, rounds=16)
     sweep = Sweep(job, over=over, error=f"{falling.pass_name}.{falling.measure}")
     with tempfile.TemporaryDirectory() as scratch:
         sweep.run(Path(scratch) / "sweep")
@@ -104,9 +109,15 @@ def _front(subject: Subject, folder: Path) -> Iterator[str]:
     front = sorted((p for p in record["points"] if p["front"]), key=lambda p: p["error"] or 0.0)
     rows = ["| Setting | Time | Error |", "|---|---|---|"]
     for point in front:
-        setting = ", ".join(str(value).rpartition(".")[2] for value in point["set"])
-        rows.append(f"| `{setting}` | {_relative(point)} | {_number(point['error']['value'])} |")
+        setting = ", ".join(_short(override) for override in point["set"])
+        rows.append(f"| `{setting}` | {_relative(point)} | {_number(point['error'])} |")
     yield "\n".join(rows)
+
+
+def _short(override: str) -> str:
+    """`passes.light.set.taps=3` as `taps=3`; other paths whole."""
+    path, _, value = override.partition("=")
+    return f"{path.rpartition('.')[2] if path.startswith('passes.') else path}={value}"
 
 
 def _relative(point: dict[str, Any]) -> str:

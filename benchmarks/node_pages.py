@@ -46,6 +46,14 @@ def page(name: str, measured: str) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def index() -> str:
+    """The list of all pages."""
+    rows = [f"| [{name}]({name}.md) | {describe_node(name)['summary']} |" for name in shipped()]
+    head = "# Nodes\n\nMade by `python -m benchmarks.node_pages`. How to read the tables: "
+    link = "[choosing_accuracy.md](../choosing_accuracy.md).\n\n"
+    return head + link + "| Node | |\n|---|---|\n" + "\n".join(rows) + "\n"
+
+
 def when(text: str) -> str:
     """The paragraph of a README that says when to pick the node and when not."""
     found = next(part for part in re.split(r"\n\s*\n", text) if "**Pick it**" in part)
@@ -101,6 +109,7 @@ def main() -> None:
     parser.add_argument("--keep-measured", action="store_true", help="renew only what is not measured")
     options = parser.parse_args()
     PAGES.mkdir(parents=True, exist_ok=True)
+    (PAGES / "README.md").write_text(index(), encoding="utf-8")
     for name in options.nodes or shipped():
         file = PAGES / f"{name}.md"
         found = measured_part(file.read_text(encoding="utf-8")) if options.keep_measured else measured(name, PAGES)

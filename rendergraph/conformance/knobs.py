@@ -50,7 +50,7 @@ def check_knobs(subject: Subject) -> Iterator[Shortfall | Note]:
         yield Shortfall("no_knob", text)
     for axis in axes:
         try:
-            yield from _judge(axis, _settled(subject, axis))
+            yield from _judge(axis, settled(subject, axis))
         except RenderGraphError as error:
             yield Shortfall("refused", f"{axis.name}: {'; '.join(d.text for d in error.diagnostics)}")
 
@@ -78,8 +78,11 @@ def told(axis: QualityAxis, line: Line) -> str:
     ) + ")"  # fmt: skip
 
 
-def _settled(subject: Subject, axis: QualityAxis) -> tuple[Line, ...]:
-    """The lines that count, at as many sizes as it takes."""
+def settled(subject: Subject, axis: QualityAxis) -> tuple[Line, ...]:
+    """The lines that count: of one image, or where that shows no fall, of the mean over several sizes of it.
+
+    :raises RenderGraphError: where the graph refuses a value.
+    """
     first = counting(axis, swept(subject, axis))
     if not any(line.shape in ("rises", "bumpy") for line in first):
         return first

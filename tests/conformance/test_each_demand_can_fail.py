@@ -36,7 +36,8 @@ BAD = {
     "a graph in which it does not run": (
         "graph",
         "not_used",
-        FILES | {"example.yaml": GRAPH.replace(STEP, "").replace("image: {file: image.npy}", "ramp: {file: r.npy}")},
+        dict(FILES)
+        | {"example.yaml": GRAPH.replace(STEP, "").replace("image: {file: image.npy}", "ramp: {file: r.npy}")},
     ),
     "an exemption of nothing": (
         "graph",
@@ -147,7 +148,7 @@ BAD = {
     "a build with a memory": (
         "plan",
         "not_deterministic",
-        FILES | {"__init__.py": COUNTS.replace(BUILD, BUILD + "        COUNT.append(0)\n")},
+        dict(FILES) | {"__init__.py": COUNTS.replace(BUILD, BUILD + "        COUNT.append(0)\n")},
     ),
     "texels it leaves unwritten": (
         "poison",

@@ -53,7 +53,7 @@ def _graph_of(node: str) -> Path:
 
 
 def _own_graph(node: str) -> Path | None:
-    """The graph shipped under the node's name, else ``example.yaml``, ``NODE.yaml`` or ``graphs/NODE.yaml`` beside it."""
+    """The graph shipped under the node's name, else one beside the node (``example.yaml``, ``NODE.yaml``)."""
     shipped = graph_folder() / f"{node}.yaml"
     if shipped.is_file():
         return shipped.resolve()

@@ -138,7 +138,7 @@ def _knob(document: Document, text: str, name: str, knob: str) -> dict[str, Any]
     if knob not in properties:
         problem = f"'{passes[name].node}' has no parameter '{knob}'"
         raise RenderGraphError([
-            diagnose("RG750", _place(text), problem=problem, hint=did_you_mean(knob, properties, "it has none"))
+            diagnose("RG750", _place(text), problem=problem, hint=did_you_mean(knob, properties) if properties else "it has none")
         ])  # fmt: skip
     return dict(properties[knob])
 
