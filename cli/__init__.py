@@ -13,7 +13,22 @@ from typing import TYPE_CHECKING, NoReturn
 
 import typer
 
-from rendergraph.cli import bench, catalogue, diff, environment, inspect, plan, render, scaffold, validate
+from rendergraph.cli import (
+    attribute,
+    bench,
+    catalogue,
+    conform,
+    diff,
+    environment,
+    fuzz,
+    inspect,
+    plan,
+    render,
+    scaffold,
+    stress,
+    sweep,
+    validate,
+)
 
 if TYPE_CHECKING:
     from rendergraph.document.messages import RenderGraphError
@@ -45,7 +60,10 @@ def _root(
     """Options before the command."""
 
 
-for group in (render, bench, diff, validate, plan, inspect, catalogue, environment, scaffold):
+for group in (
+    render, bench, diff, validate, plan, inspect, catalogue,
+    environment, scaffold, fuzz, stress, sweep, attribute, conform,
+):  # fmt: skip
     group.register(app)
 
 

@@ -41,6 +41,9 @@ def bench(
     scene: SceneOption = None,
     size: SizeOption = None,
     full: FullOption = False,
+    vs_full: Annotated[
+        bool, typer.Option("--vs-full", help="Measure the graph against itself under --full: what the scene saves it.")
+    ] = False,
     device: Annotated[
         int | None, typer.Option("--device", min=0, help="EGL device index; `rg doctor` lists them.")
     ] = None,
@@ -53,10 +56,17 @@ def bench(
     from rendergraph.measure.bench import Bench, bench_sides
     from rendergraph.measure.bench_job import BenchJob
     from rendergraph.measure.budget import check_bench
+    from rendergraph.measure.vs_full import vs_full as vs_full_of
+    from rendergraph.measure.vs_full import vs_full_record, vs_full_sides
     from rendergraph.report.bench_table import bench_tables
+    from rendergraph.report.vs_full_table import vs_full_tables
     from rendergraph.report.write import write_json as write_record
 
-    sides = bench_sides(graphs, tuple(overrides or ()), tuple(a or ()), tuple(b or ()))
+    if vs_full:
+        _refuse_more(len(graphs), full=full, sides=bool(a or b))
+        sides = vs_full_sides(graphs[0], tuple(overrides or ()))
+    else:
+        sides = bench_sides(graphs, tuple(overrides or ()), tuple(a or ()), tuple(b or ()))
     require_file(output)
     job = BenchJob(sides, processes, blocks, frames, parse_size(size), scene, full, device, warm_up, bound)
     run = Bench(job)
@@ -68,7 +78,14 @@ def bench(
             write_record(output, run.record())
     report(run.findings())
     record = run.record()
-    if format is Format.JSON:
+    if vs_full:
+        found = vs_full_of(output)
+        if format is Format.JSON:
+            write_json(vs_full_record(found))
+        else:
+            write_table(*vs_full_tables(found))
+            write_text(f"wrote {output}")
+    elif format is Format.JSON:
         write_json(record)
     else:
         write_table(*bench_tables(record))
@@ -80,3 +97,13 @@ def bench(
     ]
     report(over)
     raise typer.Exit(int(any(finding.severity == "error" for finding in over)))
+
+
+def _refuse_more(graphs: int, *, full: bool, sides: bool) -> None:
+    """Raise RenderGraphError RG581 for what --vs-full leaves no room for: the sides are one graph's."""
+    from rendergraph.document.messages import RenderGraphError, diagnose
+
+    problem = f"{graphs} graphs are named" if graphs > 1 else "--full is given too" if full else "--a or --b is given"
+    if graphs > 1 or full or sides:
+        hint = "--vs-full takes one graph: its sides are the graph in full and for what its scene requires"
+        raise RenderGraphError([diagnose("RG581", problem=problem, hint=hint)], exit_code=2)

@@ -67,16 +67,30 @@ def render(
     device: Annotated[
         int | None, typer.Option("--device", min=0, help="EGL device index; `rg doctor` lists them.")
     ] = None,
+    reference: Annotated[
+        bool,
+        typer.Option("--reference", help="Hold each pass of the last frame against its reference: accuracy.json."),
+    ] = False,
+    reference_pass: Annotated[
+        list[str] | None,
+        typer.Option("--reference-pass", metavar="PASS", help="Only this pass; implies --reference (repeatable)."),
+    ] = None,
     format: FormatOption = Format.TEXT,
 ) -> None:
-    """Run a graph; write its images and records, and print the records as tables; exit 1 above the budget."""
+    """Run a graph; write its images and records, and print the records as tables.
+
+    Exit 1 above the budget or, with --reference, where a pass is further off than its node states.
+    """
     from rendergraph.cli.console import progress_bar, report, write_json, write_table, write_text
+    from rendergraph.cli.references import Judging
     from rendergraph.document.load import load_document
     from rendergraph.document.whole_files import require_folder
     from rendergraph.measure.budget import check_run
     from rendergraph.measure.perturb import perturb_document
     from rendergraph.plan.plan import PlanOptions
-    from rendergraph.report.html import TargetGallery
+    from rendergraph.report.accuracy_findings import accuracy_findings
+    from rendergraph.report.accuracy_table import accuracy_table
+    from rendergraph.report.html import ErrorGallery, TargetGallery
     from rendergraph.report.tables import lifetime_table, timing_table
     from rendergraph.report.trace import require_samples
     from rendergraph.report.write import write_result
@@ -88,6 +102,8 @@ def render(
     if trace:
         require_samples(samples)
     page = TargetGallery() if html else None
+    errors = ErrorGallery() if html else None
+    judging = Judging(document, reference_pass or (), errors) if reference or reference_pass else None
     options = RenderOptions(
         size=parse_size(size),
         frames=frames,
@@ -96,6 +112,7 @@ def render(
         captures=tuple(capture or ()),
         inspect=page.add if page else None,
         take_frame=lambda file, pixels: write_image(output / file, pixels),
+        afterwards=judging.judge if judging else None,
         poison=poison,
         full=full,
         check_finite=check_finite,
@@ -103,16 +120,33 @@ def render(
         plan=PlanOptions(alias=not no_alias, cull=not no_cull, order=order.value, seed=order_seed),
     )
     with progress_bar() as progress:
+        if judging:
+            judging.progress = progress
         result = render_document(document, options, progress)
+        judged = judging.passes if judging else None
         evidence = perturb_document(document, options, progress) if bound else None
-        written = write_result(result, document, output, page=page, trace=trace, full=full, bound=evidence)
-    report(result.warnings)
+        written = write_result(
+            result,
+            document,
+            output,
+            page=page,
+            trace=trace,
+            full=full,
+            judged=judged,
+            errors=errors,
+            bound=evidence,
+        )
+    report([*result.warnings, *(judging.notes if judging else ())])
     if format is Format.JSON:
-        write_json({"timing": written.timing, "resources": written.resources, "files": [str(f) for f in written.files]})
+        records = {"timing": written.timing, "resources": written.resources}
+        records |= {"accuracy": written.accuracy} if written.accuracy else {}
+        write_json({**records, "files": [str(f) for f in written.files]})
     else:
-        write_table(timing_table(written.timing), lifetime_table(written.resources))
+        tables = [accuracy_table(written.accuracy)] if written.accuracy else []
+        write_table(timing_table(written.timing), lifetime_table(written.resources), *tables)
         for file in written.files:
             write_text(f"wrote {file}")
-    over = check_run(document, written.timing, written.resources)
+    over = check_run(document, written.timing, written.resources, judged=judging is not None)
+    over += accuracy_findings(document, judging.passes) if judging else []
     report(over)
     raise typer.Exit(int(any(finding.severity == "error" for finding in over)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import pytest
@@ -47,3 +48,24 @@ def device(session_device: Device) -> Iterator[Device]:
     session_device.check()
     yield session_device
     session_device.check()
+
+
+@dataclass(frozen=True)
+class Hardware:
+    """What OpenGL leaves open, and tests of exact results must allow for.
+
+    ``rounding``: steps by which a number stored in n bits may miss. llvmpipe takes the nearest code; NVIDIA's render
+    targets miss by up to 0.56. ``arithmetic``: relative difference of one formula in two programs. llvmpipe computes
+    what is written; other compilers contract products and sums as they like, which moves the last bit or two.
+    """
+
+    rounding: float
+    arithmetic: float
+
+
+@pytest.fixture(scope="session")
+def hardware(session_device: Device) -> Hardware:
+    """What this process's renderer makes of it."""
+    if "llvmpipe" in session_device.info.renderer:
+        return Hardware(rounding=0.5, arithmetic=0.0)
+    return Hardware(rounding=0.56, arithmetic=2.0**-22)

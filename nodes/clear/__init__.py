@@ -6,8 +6,17 @@ from rendergraph.document.formats import FORMATS
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
+from rendergraph.node.reference import Extreme, Measure, Quantity, Reference
 from rendergraph.node.user_shader import Color, misuse
 from rendergraph.plan.graph import BufferDesc
+
+EXTREMES = (
+    Extreme("largest_word", "All bits set.", ("passes.zero.set.value=4294967295",)),
+    Extreme("one_word", "A buffer of one word beyond its readers'.", ("resources.bins.bytes=260",)),
+    Extreme("negative_word", "No word.", ("passes.zero.set.value=-1",), refused="RG225"),
+    Extreme("part_of_a_word", "No word either.", ("passes.zero.set.value=0.5",), refused="RG225"),
+    Extreme("word_too_large", "One more than a word holds.", ("passes.zero.set.value=4294967296",), refused="RG225"),
+)
 
 
 class ClearParams(Params):
@@ -17,7 +26,7 @@ class ClearParams(Params):
         0,
         "Four numbers, or one for all channels. For depth: a distance, 0 near to 1 far. For a buffer: a 32-bit word.",
     )
-    stencil: int = knob(0, "Value of the stencil, where the format has one.", ge=0, le=255)
+    stencil: int = knob(0, "Value of the stencil, where the format has one.", ge=0, le=255, accurate="neither")
 
 
 class Clear(Node[ClearParams]):
@@ -32,6 +41,17 @@ class Clear(Node[ClearParams]):
             layers=None,
         ),
     }
+    exact = True
+    reference = Reference(
+        "analytic",
+        {
+            "target": Measure(
+                Quantity.SCALAR, "max", 0.0, "The value, as the format holds it, in every texel or word.", unit="steps"
+            )
+        },
+        source="OpenGL 4.5, 8.21 and 2.3.5",
+    )
+    extremes = EXTREMES
 
     def build(self, b: Builder) -> None:
         """One clear."""

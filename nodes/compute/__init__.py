@@ -11,6 +11,7 @@ from rendergraph.node.bindings import Binding, load_image, store_image, update_b
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node
 from rendergraph.node.params import GraphFile, knob
+from rendergraph.node.reference import Extreme
 from rendergraph.node.user_shader import UserShaderParams, misuse, require_ports, require_suffix
 from rendergraph.plan.graph import BufferDesc, DispatchIndirect, TextureDesc
 
@@ -18,6 +19,19 @@ Groups = Annotated[int, Field(ge=1, le=65535)]
 Tile = Annotated[int, Field(ge=1, le=1024)]
 
 _LOCAL_SIZE = re.compile(r"local_size_([xy])\s*=\s*(\d+)")
+
+
+EXTREMES = (
+    Extreme("first_frame", "History that is empty.", ("frame.count=1",)),
+    Extreme("one_cell", "A torus of one cell, its own neighbour eight times.",
+            ("resources.cells={format: r8ui, fixed: [1, 1]}",)),
+    Extreme("line", "A torus of one row.", ("resources.cells={format: r8ui, fixed: [77, 1]}",)),
+    Extreme("odd_groups", "Groups that overhang.", ("resources.cells={format: r8ui, fixed: [33, 17]}",)),
+    Extreme("one_invocation", "Groups of one.", ("passes.step.set.per_texel=[1, 1]",)),
+    Extreme("largest_group", "Groups of 1024.", ("passes.step.set.per_texel=[32, 32]",)),
+    Extreme("too_large_group", "More invocations than a group has.", ("passes.step.set.per_texel=[64, 64]",),
+            refused="RG205"),
+)  # fmt: skip
 
 
 class ComputeParams(UserShaderParams):
@@ -62,6 +76,8 @@ class Compute(Node[ComputeParams]):
     """
 
     open_ports = True
+    exact = True  # of each output, where the user tells the truth of the shader
+    extremes = EXTREMES
 
     def modifies(self, port: str) -> bool:
         """Outputs that are updated."""

@@ -8,11 +8,28 @@ from rendergraph.document.formats import FORMATS
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
+from rendergraph.node.reference import Extreme, Measure, Quantity, Reference
 from rendergraph.node.user_shader import misuse
 from rendergraph.plan.graph import BufferDesc, TextureDesc
 
 ANY_SAMPLES = (1, 2, 4, 8)
 ANY_FORMAT = ("rgba8", *sorted(FORMATS.keys() - {"rgba8"}))
+
+
+EXTREMES = (
+    Extreme("nan_texels", "Bits are kept.", skips={"finite": "a copy keeps what it is given"}),
+    Extreme("inf_texels", "Bits are kept.", skips={"finite": "a copy keeps what it is given"}),
+    Extreme("one_texel", "A source of one texel and one level.",
+            ("resources.tiles.fixed=[1, 1]", "resources.pyramid.mips=1", "passes.chain.set.mips=false")),
+    Extreme("odd_size", "Levels whose filter OpenGL does not say.", ("resources.tiles.fixed=[37, 13]",)),
+    Extreme("through_the_host", "Read back and uploaded.", ("passes.chain.set.path=host",)),
+    Extreme("blitted", "Scaled and converted.", ("resources.pyramid={format: rgba16f, fixed: [100, 300], mips: 0}",
+            "passes.chain.set.blit=true", "passes.chain.set.linear=true")),
+    Extreme("half_float", "Levels of half floats.", ("resources.tiles.format=rgba16f",)),
+    Extreme("levels_left_over", "Levels nobody would fill.", ("passes.chain.set.mips=false",), refused="RG225"),
+    Extreme("another_layout", "Bits that do not fit.", ("resources.pyramid={format: r8, fixed: [512, 512], mips: 0}",),
+            refused="RG225"),
+)  # fmt: skip
 
 
 class CopyParams(Params):
@@ -34,6 +51,18 @@ class Copy(Node[CopyParams]):
 
     inputs = {"source": Port("What is copied.", ANY_FORMAT, buffer=True, samples=ANY_SAMPLES, layers=None)}
     outputs = {"destination": Port("Where it goes.", ANY_FORMAT, buffer=True, samples=ANY_SAMPLES, layers=None)}
+    exact = True
+    reference = Reference(
+        "float64",
+        {
+            "destination": Measure(
+                Quantity.SCALAR, "max", 0.0, "The source's bits; with blit its values, scaled and converted; below it "
+                "the means of four texels. In shares of what a conversion may round.",
+            ),
+        },
+        source="OpenGL 4.5, 18.3.1 and 8.14.4",
+    )  # fmt: skip
+    extremes = EXTREMES
 
     def build(self, b: Builder) -> None:
         """A copy, and mip levels when asked for."""

@@ -28,10 +28,12 @@ void main() {
     }
     vec3 base_color = texelFetch(u_base_color, pixel, 0).rgb;
     vec4 material = texelFetch(u_material, pixel, 0);
-    if (material.a > 0.5) { // unlit
+#if UNLIT_SURFACES
+    if (material.a > 0.5) {
         out_color = vec4(base_color, 1.0);
         return;
     }
+#endif
     vec3 normal = unpack_normal(texelFetch(u_normal, pixel, 0));
     vec3 emissive = vec3(0.0);
 #if EMISSIVE

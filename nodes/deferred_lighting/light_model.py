@@ -28,7 +28,7 @@ class ShadowParams(Params):
         unit="texel",
         ge=1,
         le=9,
-        accurate="up",
+        accurate="neither",
     )
 
 
@@ -44,8 +44,8 @@ def light_model(b: Builder, step: str, shadow_taps: int) -> tuple[dict[str, int]
         hint = "connect both outputs of the shadow_map pass, or neither"
         raise RenderGraphError([diagnose("RG225", b.position, name=b.pass_name, problem=problem, hint=hint)])
     sun = b.requires("sun", step)
-    shadow = sun and bool(connected)
-    local_lights = b.requires("local_lights", step)
+    shadow = sun and bool(connected) and _may_shadow(b, step)
+    local_lights = b.requires("local_lights", step) and _may_light(b, step)
     lights = max(1, b.features.local_lights)
     defines = {
         "SUN": int(sun),
@@ -64,3 +64,19 @@ def light_model(b: Builder, step: str, shadow_taps: int) -> tuple[dict[str, int]
         "Cascades": read_buffer(b.input("cascades")),
     }
     return defines, bind
+
+
+def _may_shadow(b: Builder, step: str) -> bool:
+    """Whether the shadow map connected can hold a shadow that falls into view; one of unknown make always can."""
+    if b.view is None or b.view.casters or b.holds.get("shadow_map") != "sun_shadow":
+        return True
+    b.leave_out("nothing_casts_into_view", step)
+    return False
+
+
+def _may_light(b: Builder, step: str) -> bool:
+    """Whether a local light reaches the view: beyond its radius it is exactly dark."""
+    if b.view is None or b.view.lit:
+        return True
+    b.leave_out("no_light_reaches_the_view", step, lights=b.features.local_lights)
+    return False

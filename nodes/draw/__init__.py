@@ -10,6 +10,7 @@ from rendergraph.node.bindings import Attachment, depth
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node
 from rendergraph.node.params import GraphFile, knob
+from rendergraph.node.reference import Extreme
 from rendergraph.node.user_shader import UserRasterParams, misuse, require_ports, require_suffix
 from rendergraph.plan.graph import DrawArrays, DrawIndirect, DrawScene, State
 
@@ -17,6 +18,19 @@ _SUFFIXES = {
     "vertex": ".vert", "fragment": ".frag", "geometry": ".geom", "tess_control": ".tesc", "tess_evaluation": ".tese",
 }  # fmt: skip
 _MOST_SEPARATE = 65536  # every call is recorded
+
+
+EXTREMES = (
+    Extreme("one_instance", "A single cube.", ("passes.cubes.set.instances=1",)),
+    Extreme("separate", "A draw call a cube.", ("passes.cubes.set.instances=1", "passes.cubes.set.separate=true")),
+    Extreme("crowded", "Cubes that cut each other.",
+            ("passes.cubes.set.instances=400", "passes.cubes.set.uniforms.u_count=400")),
+    Extreme("one_sample", "A sample a pixel.", ("resources.ring.samples=1", "resources.depth.samples=1")),
+    Extreme("two_samples", "Two samples a pixel.", ("resources.ring.samples=2", "resources.depth.samples=2")),
+    Extreme("standard_depth", "The other depth convention.", ("frame.depth=standard",)),
+    Extreme("sixteen_bits_of_depth", "The coarsest depth.", ("resources.depth.format=d16",)),
+    Extreme("no_instance", "Nothing to draw.", ("passes.cubes.set.instances=0",), refused="RG205"),
+)  # fmt: skip
 
 
 class DrawParams(UserRasterParams):
@@ -32,10 +46,15 @@ class DrawParams(UserRasterParams):
     queues: tuple[Literal["opaque", "masked", "blended"], ...] = knob(
         (), "Draw the scene's geometry: these queues, in order."
     )
-    vertices: int = knob(0, "Draw this many vertices without attributes; the shader makes them from gl_VertexID.", ge=0)
+    vertices: int = knob(
+        0,
+        "Draw this many vertices without attributes; the shader makes them from gl_VertexID.",
+        ge=0,
+        accurate="neither",
+    )
     indirect: str | None = knob(None, "A buffer read that holds draw arguments, four 32-bit words a draw.")
-    draws: int = knob(1, "Draws in the `indirect` buffer.", ge=1, le=65536)
-    instances: int = knob(1, "Instances of each draw.", ge=1, le=1 << 24)
+    draws: int = knob(1, "Draws in the `indirect` buffer.", ge=1, le=65536, accurate="neither")
+    instances: int = knob(1, "Instances of each draw.", ge=1, le=1 << 24, accurate="neither")
     separate: bool = knob(
         False,
         "With `vertices`: a draw call an instance, in place of one instanced call; the shader tells instances apart by "
@@ -78,6 +97,8 @@ class Draw(Node[DrawParams]):
     """
 
     open_ports = True
+    exact = True  # of each output, where the user tells the truth of the shader
+    extremes = EXTREMES
 
     def modifies(self, port: str) -> bool:
         """Outputs kept, or blended over."""

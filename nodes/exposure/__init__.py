@@ -11,11 +11,34 @@ from rendergraph.node.bindings import Binding, read_buffer, sample, update_buffe
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
+from rendergraph.node.reference import Extreme, Measure, Quantity, Reference
 from rendergraph.nodes.exposure.buffer import require_exposure
 
 BINS = 256
 TILE = 32  # texels a side that one work group of 16 x 16 threads reads
 PARTIAL_BYTES = 8  # sum and count of one work group
+
+
+EXTREMES = (
+    Extreme("average", "The plain mean.", ("passes.meter.set.mode=average",)),
+    Extreme("manual_dark", "Thirty-two stops down.",
+            ("passes.meter.set.mode=manual", "passes.meter.set.compensation=-32")),
+    Extreme("manual_bright", "Thirty-two stops up.",
+            ("passes.meter.set.mode=manual", "passes.meter.set.compensation=32")),
+    Extreme("widest_range", "Forty-eight stops in 256 bins.",
+            ("passes.meter.set.min_ev=-24", "passes.meter.set.max_ev=24")),
+    Extreme("narrowest_range", "Nearly every texel beyond the range.",
+            ("passes.meter.set.min_ev=0", "passes.meter.set.max_ev=0.001")),
+    Extreme("brightest_texels", "The brightest hundredth alone.",
+            ("passes.meter.set.low=0.99", "passes.meter.set.high=1")),
+    Extreme("darkest_texels", "The darkest hundredth alone.", ("passes.meter.set.low=0", "passes.meter.set.high=0.01")),
+    Extreme("coarsest_stride", "One texel of 256.", ("passes.meter.set.stride=16",)),
+    Extreme("frozen", "An exposure that never moves.", ("passes.meter.set.brighten=0", "passes.meter.set.darken=0")),
+    Extreme("at_once", "An exposure without inertia.", ("passes.meter.set.brighten=1", "passes.meter.set.darken=1")),
+    Extreme("full_float", "Radiance of 32 bits.", ("resources.hdr.format=rgba32f",)),
+    Extreme("no_range", "A range that holds nothing.", ("passes.meter.set.min_ev=14",), refused="RG205"),
+    Extreme("short_buffer", "A buffer too small.", ("resources.exposure.bytes=12",), refused="RG225"),
+)  # fmt: skip
 
 
 class ExposureParams(Params):
@@ -26,17 +49,38 @@ class ExposureParams(Params):
         "histogram (trimmed mean of log luminance), average (its plain mean) or manual (compensation alone).",
     )
     compensation: float = knob(
-        0.0, "Added to what the meter chose; the whole exposure in manual mode.", unit="stops", ge=-32, le=32
+        0.0,
+        "Added to what the meter chose; the whole exposure in manual mode.",
+        unit="stops",
+        ge=-32,
+        le=32,
+        accurate="neither",
     )
-    low: float = knob(0.5, "Fraction of the texels, darkest first, that the histogram leaves out.", ge=0.0, le=0.99)
-    high: float = knob(0.95, "Fraction of the texels up to which the histogram counts.", ge=0.01, le=1.0)
-    min_ev: float = knob(-10.0, "Log2 luminance that darker texels are metered as.", unit="stops", ge=-24, le=24)
-    max_ev: float = knob(14.0, "Log2 luminance that brighter texels are metered as.", unit="stops", ge=-24, le=24)
+    low: float = knob(
+        0.5,
+        "Fraction of the texels, darkest first, that the histogram leaves out.",
+        ge=0.0,
+        le=0.99,
+        accurate="neither",
+    )
+    high: float = knob(
+        0.95, "Fraction of the texels up to which the histogram counts.", ge=0.01, le=1.0, accurate="neither"
+    )
+    min_ev: float = knob(
+        -10.0, "Log2 luminance that darker texels are metered as.", unit="stops", ge=-24, le=24, accurate="neither"
+    )
+    max_ev: float = knob(
+        14.0, "Log2 luminance that brighter texels are metered as.", unit="stops", ge=-24, le=24, accurate="neither"
+    )
     stride: int = knob(
         1, "Every how many texels one is read, along both axes.", unit="px", ge=1, le=16, accurate="down"
     )
-    brighten: float = knob(0.1, "Share of the way to a higher exposure that one frame goes.", ge=0.0, le=1.0)
-    darken: float = knob(0.3, "Share of the way to a lower exposure that one frame goes.", ge=0.0, le=1.0)
+    brighten: float = knob(
+        0.1, "Share of the way to a higher exposure that one frame goes.", ge=0.0, le=1.0, accurate="neither"
+    )
+    darken: float = knob(
+        0.3, "Share of the way to a lower exposure that one frame goes.", ge=0.0, le=1.0, accurate="neither"
+    )
 
     @model_validator(mode="after")
     def _ranges(self) -> ExposureParams:
@@ -57,6 +101,26 @@ class Exposure(Node[ExposureParams]):
         ),
     }
     outputs = {"exposure": Port("Scale, log luminance and texels metered: 16 bytes (exposure.glsl).", buffer=True)}
+    reference = Reference(
+        "brute_force",
+        {
+            "exposure": Measure(
+                Quantity.SCALAR, "max", 0.0472, "Exposure from the exact trimmed mean of every texel's log luminance.",
+                unit="stops",
+            ),
+            "meter": Measure(
+                Quantity.SCALAR, "max", 0.005, "This frame's measurement, by the meter's own bins and stride in "
+                "float64.", unit="stops", ideal=False,
+            ),
+            "adaptation": Measure(
+                Quantity.SCALAR, "max", 5e-5, "Adaptation from the last exposure, and the scale, in float64.",
+                unit="stops", ideal=False,
+            ),
+            "texels": Measure(Quantity.IDENTITY, "mismatch_rate", 0.0, "Finite texels metered.", ideal=False),
+        },
+        source="Krawczyk, Myszkowski and Seidel 2005",
+    )  # fmt: skip
+    extremes = EXTREMES
 
     def build(self, b: Builder) -> None:
         """Manual: one dispatch. Average: per-tile sums, then their sum. Histogram: clear, count, reduce."""

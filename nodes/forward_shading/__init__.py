@@ -10,6 +10,7 @@ from rendergraph.node.bindings import Attachment, color, depth
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import knob
+from rendergraph.node.reference import Extreme, Measure, Quantity, Reference
 from rendergraph.nodes.deferred_lighting import RADIANCE_FORMATS
 from rendergraph.nodes.deferred_lighting.light_model import SHADOW_PORTS, ShadowParams, light_model
 from rendergraph.nodes.gbuffer.geometry import depth_prepass, scene_program, solid_queues
@@ -17,6 +18,20 @@ from rendergraph.plan.graph import PREMULTIPLIED, Blend, DrawScene, State
 
 DEPTH_FORMATS = ("d32f", *sorted(DEPTH - {"d32f"}))
 BLACK = (0.0, 0.0, 0.0, 1.0)
+
+EXTREMES = (
+    Extreme("frame_1x8191", "Triangles thousands of frames wide.",
+            skips={"error": "normals and depth are interpolated over them, whose slopes float32 holds to six digits"}),
+    Extreme("without_prepass", "Hidden fragments are shaded, too.", ("passes.solid.set.prepass=off",)),
+    Extreme("vast_lights", "Lights that reach everywhere.",
+            ("scene.lights.points.count=500", "scene.lights.points.radius=1e6")),
+    Extreme("blinding", "Intensities beyond the largest half float: clamped, not infinite.",
+            ("scene.lights.points.count=8", "scene.lights.points.intensity=1e7")),
+    Extreme("packed_float", "The smallest radiance format.", ("resources.hdr.format=r11g11b10f",)),
+    Extreme("d16", "Depth too coarse to tell near layers apart.", ("resources.depth.format=d16",)),
+    Extreme("standard_depth", "The other depth convention.", ("frame.depth=standard",)),
+    Extreme("widest_filter", "The widest shadow filter.", ("passes.solid.set.shadow_taps=9",)),
+)  # fmt: skip
 
 
 class ForwardShadingParams(ShadowParams):
@@ -41,9 +56,31 @@ class ForwardShading(Node[ForwardShadingParams]):
     }  # fmt: skip
     outputs = {
         "color": Port("Scene-linear radiance; the transparent queue alone adds to it.", formats=RADIANCE_FORMATS),
-        "depth": Port("Depth of the solid surfaces.", formats=DEPTH_FORMATS, optional=True, like="color"),
+        "depth": Port(
+            "Depth of the solid surfaces.", formats=DEPTH_FORMATS, optional=True, like="color", holds="scene_depth"
+        ),
     }
     needs_scene = True
+    reference = Reference(
+        method="rays",
+        measures={
+            "traced": Measure(
+                Quantity.RADIANCE, "rel_mse", 0.5,
+                "Radiance with the sun's shadows traced instead of looked up: what the shadow map costs the image.",
+            ),
+            "color": Measure(
+                Quantity.RADIANCE, "rel_mse", 1.2e-5, "Radiance by the light model in float64 at what rays hit.",
+                "color", ideal=False,
+            ),
+        },
+        source="Rays through the pixels' centres; Walter et al. 2007; Heitz, JCGT 3(2), 2014; Porter and Duff 1984.",
+    )  # fmt: skip
+    bounds = {"color": (0.0, 65504.0), "depth": (0.0, 1.0)}
+    extremes = EXTREMES
+    accuracy_axes = {
+        "resources.hdr.format=r11g11b10f|rgba16f|rgba32f": "color",
+        "resources.shadow.fixed=[256, 256]|[1024, 1024]": "traced",
+    }
 
     def modifies(self, port: str) -> bool:
         """The transparent queue alone is blended over what is there."""
@@ -54,7 +91,7 @@ class ForwardShading(Node[ForwardShadingParams]):
         transparent_only = self.params.queues == "transparent"
         self._check_depth(b, transparent_only)
         solid = [] if transparent_only else solid_queues(b)
-        blended = self.params.queues != "opaque" and b.requires("blended", "blended")
+        blended = self.params.queues != "opaque" and b.sees("blended", "blended")
         if transparent_only:
             target = b.input("depth")
         elif "depth" in b.outputs:
@@ -75,7 +112,7 @@ class ForwardShading(Node[ForwardShadingParams]):
         if not queues:
             return
         defines, bind = light_model(b, queues[0], self.params.shadow_taps)
-        normal_map = b.requires("normal_mapped", queues[0])
+        normal_map = b.sees("normal_mapped", queues[0])
         width, height = b.size(b.output("color"))
         for queue in queues:
             first = queue == queues[0] and queue != "blended"

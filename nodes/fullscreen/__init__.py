@@ -7,8 +7,22 @@ from pydantic import field_validator
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node
 from rendergraph.node.params import GraphFile, knob
+from rendergraph.node.reference import Extreme
 from rendergraph.node.user_shader import UserRasterParams, require_suffix
 from rendergraph.plan.graph import State
+
+EXTREMES = (
+    Extreme(
+        "frame_8191x1",
+        "Waves over thousands of frames' heights.",
+        skips={"error": "the plasma's waves are taken at distances up to 12000, where float32 keeps three digits"},
+    ),
+    Extreme("flat", "A wave without a length.", ("passes.plasma.set.uniforms.u_scale=0.0",)),
+    Extreme("standing", "Nothing moves.", ("passes.plasma.set.uniforms.u_speed=0.0",)),
+    Extreme("whole_uniforms", "Whole numbers for floats.", ("passes.plasma.set.uniforms.u_scale=3",)),
+    Extreme("half_float", "A target of half floats.", ("outputs.image.format=rgba16f", "outputs.image.file=image.npy")),
+    Extreme("outside", "A shader from outside the folder.", ("passes.plasma.set.shader=../x.frag",), refused="RG222"),
+)
 
 
 class FullscreenParams(UserRasterParams):
@@ -31,6 +45,8 @@ class Fullscreen(Node[FullscreenParams]):
     """
 
     open_ports = True
+    exact = True  # of each output, where the user tells the truth of the shader
+    extremes = EXTREMES
 
     def modifies(self, port: str) -> bool:
         """Outputs kept, or blended over."""

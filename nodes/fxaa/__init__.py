@@ -6,8 +6,24 @@ from rendergraph.node.bindings import color, sample
 from rendergraph.node.builder import Builder
 from rendergraph.node.contract import Node, Port
 from rendergraph.node.params import Params, knob
+from rendergraph.node.reference import Extreme, Measure, Quantity, Reference
 
 DISPLAY_FORMATS = ("rgba8", "rgb10_a2", "rgba16", "rgba16f", "rgba32f")
+
+
+EXTREMES = (
+    Extreme("every_edge", "No contrast is too faint.",
+            ("passes.antialias.set.edge_threshold=0", "passes.antialias.set.edge_minimum=0")),
+    Extreme("no_edge", "No contrast is enough.", ("passes.antialias.set.edge_minimum=1",)),
+    Extreme("shortest_search", "One step each way.", ("passes.antialias.set.search_steps=1",)),
+    Extreme("longest_search", "A hundred texels each way.", ("passes.antialias.set.search_steps=32",)),
+    Extreme("sharpest", "Nothing below a pixel is softened.", ("passes.antialias.set.subpixel=0",)),
+    Extreme("softest", "Everything below a pixel is.", ("passes.antialias.set.subpixel=1",)),
+    Extreme("half_float", "A display in half floats.",
+            ("outputs.aliased.format=rgba16f", "outputs.aliased.file=aliased.npy",
+             "outputs.image.format=rgba16f", "outputs.image.file=image.npy")),
+    Extreme("no_search", "A search without a step.", ("passes.antialias.set.search_steps=0",), refused="RG205"),
+)  # fmt: skip
 
 
 class FxaaParams(Params):
@@ -22,7 +38,7 @@ class FxaaParams(Params):
     search_steps: int = knob(
         12, "Steps sought along an edge each way; longer edges are blended better.", ge=1, le=32, accurate="up"
     )
-    subpixel: float = knob(0.75, "How much details below a pixel are softened.", ge=0.0, le=1.0)
+    subpixel: float = knob(0.75, "How much details below a pixel are softened.", ge=0.0, le=1.0, accurate="neither")
 
 
 class Fxaa(Node[FxaaParams]):
@@ -30,6 +46,22 @@ class Fxaa(Node[FxaaParams]):
 
     inputs = {"color": Port("Tone-mapped, sRGB-encoded colour.", formats=DISPLAY_FORMATS)}
     outputs = {"color": Port("The smoothed image; alpha is the input's.", formats=DISPLAY_FORMATS, like="color")}
+    reference = Reference(
+        "brute_force",
+        {
+            "filter": Measure(
+                Quantity.DISPLAY, "max", 0.0022, "The same filter in float64, before rounding.", port="color",
+                ideal=False,
+            ),
+            "coverage": Measure(
+                Quantity.DISPLAY, "rmse", 0.036, "The input with 64 samples a pixel. The tolerance is the unfiltered "
+                "input's own error.", port="color",
+            ),
+        },
+        source="Lottes 2009; brute-force supersampling",
+    )  # fmt: skip
+    bounds = {"color": (0.0, 1.0)}
+    extremes = EXTREMES
 
     def build(self, b: Builder) -> None:
         """One full-screen draw."""

@@ -25,6 +25,8 @@ def scene_program(
         "DEPTH_ONLY": depth_only,
         "LAYERED": layered,
         "NORMAL_MAP": normal_map,
+        "BACK_FACES": not depth_only and b.requires("double_sided"),
+        "UNLIT_SURFACES": not depth_only and b.requires("unlit"),
         "TEXTURE_SLOTS": ALL_SLOTS if b.full else b.features.texture_slots,
         "TEXTURE_TRANSFORMS": b.full or b.features.texture_transforms,
         "TEXTURE_WRAPS": b.full or b.features.texture_wraps,
@@ -34,9 +36,12 @@ def scene_program(
     return b.program("<scene.vert>", fragment, defines={**variant, **(defines or {})})
 
 
-def solid_queues(b: Builder) -> list[str]:
-    """The queues of opaque and alpha-tested geometry that the scene has; what it lacks is recorded."""
-    return [queue for queue in ("opaque", "masked") if b.requires(queue, queue)]
+def solid_queues(b: Builder, *, in_view: bool = True) -> list[str]:
+    """The queues of opaque and alpha-tested geometry that the scene has, or has ``in_view``; what is left out is
+    recorded.
+    """
+    needed = b.sees if in_view else b.requires
+    return [queue for queue in ("opaque", "masked") if needed(queue, queue)]
 
 
 def depth_prepass(b: Builder, target: str, queues: list[str]) -> None:

@@ -1,23 +1,10 @@
 """Which packing of a normal a texture format gets: the defines that shaders/packing.glsl is compiled with.
 
-===================  =====  ==========  ==============================
-format               bytes  packing     largest error (degrees)
-===================  =====  ==========  ==============================
-rg8, rg8_snorm       2      octahedral  0.95, 0.95
-rg16, rg16_snorm     4      octahedral  0.0037, 0.0037
-rg16f                4      octahedral  0.059 (0.118 where truncated)
-rgb10_a2             4      xyz         0.096
-rgba8, rgba8_snorm   4      xyz         0.39, 0.39
-rgba16f              8      xyz         0.02 (0.04 where truncated)
-rg32f                8      octahedral  float32 rounding
-rgba32f              16     xyz         float32 rounding
-===================  =====  ==========  ==============================
-
 Signed formats hold zero, and with it the directions of the axes, exactly; unsigned ones miss it by half a code, and on
 floors and walls of polished material that is seen (3 steps of 255 in a highlight of the atrium).
 
 Octahedral normals: Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2),
-2014. The figures are measured by tests/nodes/test_gbuffer.py over a million directions, poles and axes included.
+2014. docs/normal_formats.md has the errors measured over a million directions, poles and axes included.
 """
 
 from __future__ import annotations
@@ -29,6 +16,13 @@ NORMAL_FORMATS = (
     "rg16_snorm", "rg16", "rgb10_a2", "rg8", "rg8_snorm", "rgba8", "rgba8_snorm", "rg16f", "rgba16f",
     "rg32f", "rgba32f",
 )  # fmt: skip
+
+#: Largest angle between a unit vector and what a format holds of it, degrees. Half floats: where they are truncated, as
+#: OpenGL allows (2.3.4.1) and llvmpipe does. 32-bit floats: the shader's own arithmetic.
+NORMAL_ERROR = {
+    "rg8": 0.95, "rg8_snorm": 0.95, "rgba8": 0.39, "rgba8_snorm": 0.39, "rgb10_a2": 0.097, "rg16": 0.0037,
+    "rg16_snorm": 0.0037, "rg16f": 0.12, "rgba16f": 0.026, "rg32f": 5e-5, "rgba32f": 5e-5,
+}  # fmt: skip
 
 
 def normal_defines(format: str) -> dict[str, int]:

@@ -15,13 +15,17 @@ const float PI = 3.14159265358979;
 const float TWILIGHT = -0.10452846;  // sine of -6 degrees: the end of civil twilight
 const float CEILING = 64512.0;       // largest value that every floating-point target format holds
 
-// Share of the pixel that the disc covers, its edge taken as straight within the pixel.
+// Share of the pixel that the disc covers, its edge a ramp as wide as a pixel. A disc smaller than a pixel is drawn as
+// large as one. The ramp spreads a disc of radius r over pi (r^2 + pixel^2 / 12): divided by that, its light stays the same.
 float disc_coverage(vec3 direction, vec3 sun) {
     float pixel = 2.0 * frame.viewport.w / frame.projection[1][1];  // [rad] at the centre of the view
     // By the chord, and the arcsine by its series: the cosine, and Mesa's asin(), lose digits at so small an angle.
     float chord = length(direction - sun);
-    float angle = chord * (1.0 + chord * chord / 24.0);
-    return clamp((u_sun_radius - angle) / pixel + 0.5, 0.0, 1.0);
+    float square = chord * chord;
+    float angle = chord * (1.0 + square / 24.0 * (1.0 + square * 9.0 / 80.0));
+    float radius = max(u_sun_radius, 0.5 * pixel);
+    float spread = (radius * radius + pixel * pixel / 12.0) / (u_sun_radius * u_sun_radius);
+    return clamp((radius - angle) / pixel + 0.5, 0.0, 1.0) / spread;
 }
 
 void main() {

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rendergraph.device import enums as e
 from rendergraph.device.context import Device
+from rendergraph.device.texels import POISON_WORDS, Poison
 from rendergraph.document.messages import RenderGraphError, diagnose
 
 
@@ -97,9 +98,9 @@ def clear_buffer(device: Device, buffer: Buffer, word: int = 0) -> None:
     device.debug.subject = ""
 
 
-def poison_buffer(device: Device, buffer: Buffer) -> None:
-    """Fill with 0xFFFFFFFF: NaN as float, the largest unsigned integer."""
-    clear_buffer(device, buffer, 0xFFFFFFFF)
+def poison_buffer(device: Device, buffer: Buffer, poison: Poison = "nan") -> None:
+    """Fill with the bits of a float: NaN (0xFFFFFFFF, the largest unsigned integer too), infinity or 1000."""
+    clear_buffer(device, buffer, POISON_WORDS[poison])
 
 
 def copy_buffer(device: Device, source: Buffer, destination: Buffer, bytes: int) -> None:

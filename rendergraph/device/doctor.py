@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 OLDEST_PYTHON: Final = (3, 11)
 PACKAGES: Final = ("moderngl", "glcontext", "numpy", "pydantic", "typer", "yaml", "PIL", "rich", "jinja2")
 #: Module and extra -> what it adds.
-EXTRAS: Final = {("OpenEXR", "exr"): "EXR images"}
+EXTRAS: Final = {
+    ("OpenEXR", "exr"): "EXR images",
+    ("flip_evaluator", "flip"): "the metric FLIP",
+    ("embreex", "reference"): "references that trace rays",
+    ("platformdirs", "reference"): "references kept on disk",
+}
 #: What the shipped nodes count on: the guaranteed minimums of OpenGL 4.5 (tables 23.53 to 23.74), said because some
 #: drivers fall short of them.
 NEEDED_LIMITS: Final = {
@@ -52,6 +57,8 @@ def diagnose_environment() -> list[CheckResult]:
     checks = [_python(), *(_package(name) for name in PACKAGES)]
     if all(check.ok for check in checks):
         checks += _guarded("devices", _devices)
+    if all(check.ok for check in checks):
+        checks += _guarded("cache of truths", _cache)
     return checks + [_extra(module, extra, adds) for (module, extra), adds in EXTRAS.items()]
 
 
@@ -96,6 +103,18 @@ def _extra(module: str, extra: str, adds: str) -> CheckResult:
     return CheckResult(
         f"extra {extra}", True, f"not installed (optional: {adds})", f"pip install 'rendergraph[{extra}]'"
     )
+
+
+def _cache() -> Iterator[CheckResult]:
+    from rendergraph.measure.truth.cache_folder import LIMIT, VARIABLE, cache_folder, folder_bytes
+
+    folder = cache_folder()
+    if folder is None:
+        fix = f"pip install 'rendergraph[reference]', or set {VARIABLE}"
+        yield CheckResult("cache of truths", True, "none: references are computed each time", fix)
+    else:
+        held = f"{folder_bytes(folder) / 2**20:.1f} of at most {LIMIT / 2**20:.0f} MiB"
+        yield CheckResult("cache of truths", True, f"{folder}, {held}")
 
 
 def _devices() -> Iterator[CheckResult]:

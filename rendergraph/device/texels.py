@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -77,17 +77,29 @@ def clear_value(format: str, value: tuple[float, float, float, float]) -> tuple[
     return np.array(value, np.float32), e.RGBA, e.FLOAT
 
 
-def poison_value(format: str) -> tuple[float, float, float, float]:
-    """What a target nobody has written holds under ``--poison``: NaN, the largest integer, full scale; 0 would hide.
+#: What memory nobody has written is filled with: a float value, and what stands for it in formats that cannot hold it.
+Poison = Literal["nan", "inf", "1000"]
+POISONS: Final[tuple[Poison, ...]] = ("nan", "inf", "1000")
 
-    Depth is 0.37 (unlike any clear value; NaN cannot be stored in unorm depth), stencil 0xA5.
+#: By kind: what floats hold, normalised channels (0..1), depth, and the 32-bit words of a buffer.
+_FLOAT: Final = {"nan": float("nan"), "inf": float("inf"), "1000": 1000.0}
+_SHARE: Final = {"nan": 1.0, "inf": 1.0, "1000": 0.5}
+_DEPTH: Final = {"nan": 0.37, "inf": 1.0, "1000": 0.63}
+POISON_WORDS: Final[dict[Poison, int]] = {"nan": 0xFFFFFFFF, "inf": 0x7F800000, "1000": 0x447A0000}
+
+
+def poison_value(format: str, poison: Poison = "nan") -> tuple[float, float, float, float]:
+    """What a target nobody has written holds under ``--poison``: NaN, infinity or 1000 in float formats; the largest
+    number in integer ones; full or half scale in normalised ones. 0 would hide.
+
+    Depth is 0.37, 1 or 0.63 (NaN cannot be stored in unorm depth), stencil 0xA5.
     """
     row = FORMATS[format]
     if row.depth:
-        return (0.37, 0xA5, 0.0, 0.0)
+        return (_DEPTH[poison], 0xA5, 0.0, 0.0)
     if row.channel in (Channel.UINT, Channel.INT):
         bits = 10 if format == "rgb10_a2ui" else row.texel_bytes // row.channels * 8
         most = float(2 ** (bits - (row.channel is Channel.INT)) - 1)
         return (most, most, most, 3.0 if format == "rgb10_a2ui" else most)
-    fill = float("nan") if row.channel is Channel.FLOAT else 1.0
+    fill = (_FLOAT if row.channel is Channel.FLOAT else _SHARE)[poison]
     return (fill, fill, fill, fill)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rendergraph.device import enums as e
 from rendergraph.device.context import Device
-from rendergraph.device.texels import clear_value, poison_value, transfer
+from rendergraph.device.texels import Poison, clear_value, poison_value, transfer
 from rendergraph.device.texture_rules import level_size as level_size
 from rendergraph.device.texture_rules import say, why_impossible, why_not_viewable
 from rendergraph.document.formats import FORMATS
@@ -167,9 +167,9 @@ def clear_texture(
     device.debug.subject = ""
 
 
-def poison_texture(device: Device, texture: Texture) -> None:
-    """Fill with what must never be seen: NaN in float formats, all ones elsewhere."""
-    clear_texture(device, texture, poison_value(texture.desc.format))
+def poison_texture(device: Device, texture: Texture, poison: Poison = "nan") -> None:
+    """Fill with what must never be seen: see :func:`rendergraph.device.texels.poison_value`."""
+    clear_texture(device, texture, poison_value(texture.desc.format, poison))
 
 
 def read_texture(

@@ -19,16 +19,18 @@ def check_budget_names(data: Mapping[str, Any], locate: Locate) -> list[Diagnost
     Parts of ``data`` of the wrong type are passed over: the document's own models report them.
     """
     budget, passes = data.get("budget"), data.get("passes")
-    limits = budget.get("passes") if isinstance(budget, dict) else None
-    if not isinstance(limits, dict) or not isinstance(passes, dict):
+    if not isinstance(budget, dict) or not isinstance(passes, dict):
         return []
+    limits = [(kind, budget.get(kind)) for kind in ("passes", "error")]
     return [
         diagnose(
             "RG706",
-            locate("budget", "passes", name, key=True),
+            locate("budget", kind, name, key=True),
             name=name,
             hint=did_you_mean(name, passes, "passes: {choices}"),
         )
-        for name in limits
+        for kind, by_name in limits
+        if isinstance(by_name, dict)
+        for name in by_name
         if name not in passes
     ]

@@ -125,6 +125,7 @@ class OutputModel(Model):
 
 
 PassMilliseconds = Annotated[float, Field(gt=0)]
+PassError = Annotated[float, Field(ge=0)]
 
 
 class BudgetModel(Model):
@@ -140,7 +141,13 @@ class BudgetModel(Model):
         json_schema_extra={"unit": "ms"},
     )
     draws: int | None = Field(None, ge=0, description="Draws a frame; each draw of a multi-draw counts.")
-    flip: float | None = Field(None, ge=0, le=1, description="Mean FLIP error of the image against its reference.")
+    error: dict[Name, PassError] = Field(
+        default_factory=dict,
+        description="Error of single passes, by name, in the metric that the node states; checked by --reference.",
+    )
+    flip: float | None = Field(
+        None, ge=0, le=1, description="Mean FLIP error of output images against their truth; checked by --reference."
+    )
 
 
 class DocumentModel(Model):

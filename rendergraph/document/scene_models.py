@@ -5,6 +5,7 @@ Angles are degrees, lengths metres, colours linear Rec. 709.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
@@ -139,6 +140,24 @@ class LightsModel(Model):
     from_scene: bool = Field(True, description="Use the lights of the scene file or procedural scene too.")
 
 
+class ChangeModel(Model):
+    """What of the scene is another from a frame on. What a change does not name stays as it was before."""
+
+    frame: int = Field(..., ge=0, description="First frame with it.")
+    lights: LightsModel | None = Field(None, description="All lights, in place of those before.")
+    sun: SunModel | Literal["none"] | None = Field(None, description="The sun alone: another, or `none`.")
+    hide: tuple[str, ...] | None = Field(
+        None, description="Nodes and materials of the scene that are not drawn, by name; `[]` shows everything again."
+    )
+    camera: CameraModel | None = Field(None, description="Another camera.")
+
+    @model_validator(mode="after")
+    def _something(self) -> ChangeModel:
+        if all(value is None for value in (self.lights, self.sun, self.hide, self.camera)):
+            raise mistake("nothing changes", "give it lights, sun, hide or camera", "frame")
+        return self
+
+
 class SceneModel(Model):
     """What is drawn: a shipped procedural scene or a glTF file, a camera and lights."""
 
@@ -149,3 +168,12 @@ class SceneModel(Model):
     seed: int = Field(0, ge=0, le=2**32 - 1, description="Seed of a procedural scene.")
     camera: CameraModel = Field(default_factory=lambda: CameraModel(), description="The camera.")
     lights: LightsModel = Field(default_factory=lambda: LightsModel(), description="The lights.")
+    changes: tuple[ChangeModel, ...] = Field((), description="What changes between frames, in order of time.")
+
+    @model_validator(mode="after")
+    def _rising(self) -> SceneModel:
+        for index, (one, other) in enumerate(pairwise(self.changes)):
+            if other.frame <= one.frame:
+                problem = f"a change at frame {other.frame} comes after one at frame {one.frame}"
+                raise mistake(problem, "list changes by frame, one a frame", f"changes/{index + 1}/frame")
+        return self

@@ -8,10 +8,13 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """One of the things compared: a graph file (or shipped graph's name) under overrides (``--set``)."""
+    """One of the things compared: a graph file (or shipped graph's name) under overrides (``--set``), built in ``full``
+    or for what its scene requires.
+    """
 
     graph: str
     overrides: tuple[str, ...] = ()
+    full: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +50,8 @@ class BenchJob:
     @staticmethod
     def from_json(data: dict[str, Any]) -> BenchJob:
         """The job of :meth:`to_json`'s data."""
-        sides = {name: Side(side["graph"], tuple(side["overrides"])) for name, side in data["sides"].items()}
+        sides = {
+            name: Side(side["graph"], tuple(side["overrides"]), side["full"]) for name, side in data["sides"].items()
+        }
         size = tuple(data["size"]) if data["size"] else None
         return BenchJob(**{**data, "sides": sides, "size": size})

@@ -95,6 +95,7 @@ class BenchSide:
         return {
             "graph": self.side.graph,
             "set": list(self.side.overrides),
+            "full": self.side.full,
             "title": self.document.model.title,
             "clock": {"name": facts.clock, "proof": facts.proof},
             "device": device_record(facts),
@@ -123,7 +124,8 @@ class BenchSide:
 
 def plan_sized(side: BenchSide, job: BenchJob, size: tuple[int, int] | None) -> PlannedDocument:
     """The side's plan, at another size where one is given."""
-    return plan_document(side.document, PlanOptions(), scene=job.scene, size=size or job.size, full=job.full)
+    full = job.full or side.side.full
+    return plan_document(side.document, PlanOptions(), scene=job.scene, size=size or job.size, full=full)
 
 
 def prepare(device: Device, planned: PlannedDocument) -> Runner:

@@ -30,8 +30,12 @@ class Spending:
     draw_calls: int = 0
 
 
-def check_run(document: Document, timing: Mapping[str, Any], resources: Mapping[str, Any]) -> list[Diagnostic]:
-    """All limits against a run's timing and resources records: what both checks below find, errors first."""
+def check_run(
+    document: Document, timing: Mapping[str, Any], resources: Mapping[str, Any], *, judged: bool = False
+) -> list[Diagnostic]:
+    """All limits against a run's timing and resources records: what both checks below find, errors first. ``judged``:
+    errors were measured too, and their budgets are checked with them (report/accuracy_findings.py).
+    """
     passes = timing["passes"]
     spent = Spending(
         frame_ms=_median(timing["frame_ms"]["samples"]),
@@ -40,7 +44,8 @@ def check_run(document: Document, timing: Mapping[str, Any], resources: Mapping[
         draws={entry["name"]: entry["counters"]["draws"] for entry in passes},
         draw_calls=sum(entry["counters"]["draw_calls"] for entry in passes),
     )
-    return _errors_first([*check_memory(document, resources), *check_spending(document, spent)])
+    found = [*check_memory(document, resources), *check_spending(document, spent)]
+    return _errors_first([finding for finding in found if not (judged and finding.code == "RG709")])
 
 
 def check_bench(document: Document, bench: Mapping[str, Any], side: str) -> list[Diagnostic]:
@@ -66,7 +71,7 @@ def check_bench(document: Document, bench: Mapping[str, Any], side: str) -> list
 def check_memory(
     document: Document, resources: Mapping[str, Any], *, assumed: bool = False, who: str = ""
 ) -> list[Diagnostic]:
-    """RG703 when a resources record exceeds the budget of memory, and RG709 for a budget that nothing can check yet.
+    """RG703 when a resources record exceeds the budget of memory, and RG709 for budgets that need references.
 
     ``assumed``: the plan is for a scene with every feature, not for the real one; RG705 then, a warning. ``who`` goes
     before the message.
@@ -86,8 +91,9 @@ def check_memory(
         }
         code = "RG705" if assumed else "RG703"
         found.append(diagnose(code, document.position("budget", "transient_mib"), **values))
-    if budget.flip is not None:
-        found.append(diagnose("RG709", document.position("budget", "flip")))
+    for what in ("flip", "error"):
+        if getattr(budget, what) not in (None, {}):
+            found.append(diagnose("RG709", document.position("budget", what), what=what))
     return found
 
 

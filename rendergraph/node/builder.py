@@ -33,7 +33,7 @@ from rendergraph.plan.graph import (
     Usage,
     Work,
 )
-from rendergraph.scene.features import SceneFeatures
+from rendergraph.scene.features import SceneFeatures, ViewFeatures
 
 SHADERS = Path(__file__).resolve().parent.parent / "shaders"
 
@@ -56,9 +56,11 @@ class Builder:
     inputs: Mapping[str, Resource]
     outputs: Mapping[str, Resource]
     position: Position | None = None
+    holds: Mapping[str, str] = field(default_factory=dict)  # input port -> what is sure to be in it (Port.holds)
     resources: dict[str, Resource] = field(default_factory=dict)
     subpasses: list[SubPass] = field(default_factory=list)
     decisions: list[Decision] = field(default_factory=list)
+    narrowed: dict[str, str] = field(default_factory=dict)  # output resource -> a format that loses nothing
     _names: set[str] = field(default_factory=set)  # of the sub-passes
 
     # ---- what is connected
@@ -96,9 +98,40 @@ class Builder:
         """Whether the scene has ``feature`` (always, under ``--full``). Records what was left out and why."""
         present = bool(getattr(self.features, feature))
         if not present and not self.full:
-            subject = f"{self.pass_name}.{step}" if step else self.pass_name
-            self.decisions.append(Decision("specialise", "scene_lacks_feature", subject, {"feature": feature}))
+            self.leave_out("scene_lacks_feature", step, feature=feature)
         return present or self.full
+
+    def sees(self, feature: str, step: str = "") -> bool:
+        """As :meth:`requires`, of what the cameras see: for passes that draw or light the view, and nothing beside it.
+
+        False too where the scene has ``feature`` and nothing of it can come into any view.
+        """
+        if not self.requires(feature, step):
+            return False
+        view = self.view
+        if view is not None and feature in view.unseen:
+            self.leave_out("none_in_view", step, feature=feature)
+            return False
+        return True
+
+    @property
+    def view(self) -> ViewFeatures | None:
+        """What is certain of the view; None where nothing is, and under ``--full``."""
+        return None if self.full else self.features.view
+
+    def leave_out(self, reason: str, step: str = "", **evidence: Any) -> None:
+        """Record that a part of this pass is left out or simplified, and why (plan/explain.py has the sentence)."""
+        subject = f"{self.pass_name}.{step}" if step else self.pass_name
+        decision = Decision("specialise", reason, subject, evidence)
+        if decision not in self.decisions:
+            self.decisions.append(decision)
+
+    def narrow(self, port: str, format: str) -> None:
+        """Declare that an output's content fits ``format`` without loss, whoever samples it. The resource gets it where
+        it is transient, only this pass writes it, and all others sample it.
+        """
+        if not self.full:
+            self.narrowed[self.output(port)] = format
 
     # ---- internal targets
 

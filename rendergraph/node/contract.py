@@ -25,7 +25,8 @@ class Port:
     ``formats`` lists what the port takes, the preferred one first (an undeclared output resource gets it); empty for a
     buffer. With both ``formats`` and ``buffer`` the port takes either. ``like`` names another port whose size this one
     must have. ``modify`` marks an output that adds to what the resource already holds. ``layers``: exact number of
-    layers, ``None`` for any.
+    layers, ``None`` for any. ``holds`` says what an output contains, in a word that nodes agree on (``scene_depth``,
+    ``emission``, ``materials``, ``sun_shadow``): a node that reads it may rely on it (``Builder.holds``).
     """
 
     help: str
@@ -36,6 +37,7 @@ class Port:
     like: str | None = None
     samples: tuple[int, ...] = (1,)
     layers: int | None = 1
+    holds: str = ""
 
 
 class Node(ABC, Generic[ParamsT]):
@@ -44,7 +46,10 @@ class Node(ABC, Generic[ParamsT]):
     ``open_ports`` nodes take any port name, for users' own shaders. ``needs_scene`` nodes draw geometry or read lights.
     ``reference`` names the truth that its outputs are held against, ``exact`` nodes have none to approximate: their
     outputs equal it. ``bounds`` are the least and largest value that an output port may ever hold, and ``extremes`` the
-    cases beyond the common ones (measure/stress) that it must survive.
+    cases beyond the common ones (measure/stress) that it must survive. ``accuracy_axes`` are what of the node's own
+    graph trades accuracy beside its knobs, as ``rg sweep --over`` takes it (``resources.hdr.format=rgba16f|rgba32f``),
+    with the measure whose error it lowers. ``exempt`` are demands of the conformance suite that the node does not meet,
+    each with the reason, which reports show.
     """
 
     name: ClassVar[str] = ""  # set by discovery to the folder's name
@@ -58,6 +63,8 @@ class Node(ABC, Generic[ParamsT]):
     exact: ClassVar[bool] = False
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
     extremes: ClassVar[tuple[Extreme, ...]] = ()
+    accuracy_axes: ClassVar[Mapping[str, str]] = {}
+    exempt: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, params: ParamsT) -> None:
         self.params = params

@@ -13,6 +13,9 @@ class Params(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
+#: What ``accurate`` says of a parameter of which no value is more accurate than another.
+NEITHER = "neither"
+
 #: A file named in a graph, relative to the graph's own folder; expansion checks that it exists and stays inside.
 GraphFile = Annotated[str, Field(json_schema_extra={"rg_file": True})]
 
@@ -31,9 +34,12 @@ def knob(
     """Declare one parameter.
 
     ``unit`` is the SI or pixel unit ("" for pure numbers). ``accurate`` marks a quality knob: ``"up"`` when larger is
-    more accurate and costlier, ``"down"`` when smaller is, or the values from cheap to accurate for a choice.
+    more accurate and costlier, ``"down"`` when smaller is, or the values from cheap to accurate for a choice;
+    ``"neither"`` says that it chooses what is computed, not how well.
     """
     extra: dict[str, Any] = {"unit": unit}
-    if accurate:
+    if accurate == NEITHER:
+        extra["indifferent"] = True
+    elif accurate:
         extra["accurate"] = list(accurate) if isinstance(accurate, tuple) else accurate
     return Field(default, description=help, ge=ge, le=le, gt=gt, lt=lt, json_schema_extra=extra)

@@ -19,6 +19,8 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import numpy as np
     import numpy.typing as npt
 
@@ -56,6 +58,7 @@ class Measure:
     help: str
     port: str = ""
     unit: str = ""
+    ideal: bool = True  # False: of an algorithm's implementation, where the reference's other measures are ideal
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +110,10 @@ class PassRun:
     frame: Frame
     before: Mapping[str, F64 | Words] = field(default_factory=dict)
     index: int = 0  # of the frame
+    folder: Path | None = None  # the graph file's
+    #: Of outputs with mip levels, the levels below the first; of outputs with a stencil, float64[h, w, 1].
+    levels: Mapping[str, tuple[F64, ...]] = field(default_factory=dict)
+    stencils: Mapping[str, F64] = field(default_factory=dict)
     scene: Scene | None = None
     camera: Camera | None = None
     #: An input texture rendered at ``factor`` times the frame's size and averaged back: ``supersampled(port, factor)``.

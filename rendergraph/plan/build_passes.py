@@ -17,7 +17,7 @@ from rendergraph.plan.check_ports import Connections, check_ports
 from rendergraph.plan.check_subpasses import NodeError, check_subpasses
 from rendergraph.plan.check_whole import check_files
 from rendergraph.plan.findings import Findings
-from rendergraph.plan.graph import Decision, Frame, Pass, Resource
+from rendergraph.plan.graph import Decision, Frame, Kind, Pass, Resource
 from rendergraph.scene.features import SceneFeatures
 
 #: What a node is told of the scene in a graph that has none.
@@ -34,9 +34,12 @@ class PassBuilder:
     full: bool
     decisions: list[Decision] = field(default_factory=list)
     resources: Mapping[str, Resource | None] = field(default_factory=dict)  # None: wrong, and reported
+    nodes: Mapping[str, Node[Any]] = field(default_factory=dict)
     internal: dict[str, dict[str, Resource]] = field(default_factory=dict)  # nodes' own targets, by pass
     passes: dict[str, Pass] = field(default_factory=dict)
     files: dict[str, str | None] = field(default_factory=dict)  # what is wrong with each file named
+    narrowed: dict[str, dict[str, str]] = field(default_factory=dict)  # by pass: its outputs that fit a narrower format
+    said: Mapping[str, set[str]] = field(default_factory=dict)  # what each resource's writers say that it holds
     cause: Exception | None = None  # of the first internal error: its traceback is for the node's author
 
     def make_nodes(self) -> dict[str, Node[Any]]:
@@ -49,9 +52,25 @@ class PassBuilder:
                 self._internal_error(name, error)
         return nodes
 
+    def _held(self, resource: Resource) -> str:
+        """What a resource is sure to hold: the one word that all of its writers' ports agree on."""
+        if resource.kind not in (Kind.TRANSIENT, Kind.PERSISTENT):
+            return ""
+        said = self.said.get(resource.name, set())
+        return next(iter(said)) if len(said) == 1 else ""
+
+    def _all_said(self) -> dict[str, set[str]]:
+        """What the port of each writer of each resource says that it holds."""
+        said: dict[str, set[str]] = {}
+        for name, node in self.nodes.items():
+            for port, written in self.findings.document.model.passes[name].write.items():
+                said.setdefault(written, set()).add(node.outputs[port].holds if port in node.outputs else "")
+        return said
+
     def run(self, nodes: Mapping[str, Node[Any]], resources: Mapping[str, Resource | None]) -> None:
         """Fill ``passes`` and ``internal`` with all that can be built; mistakes go to the findings."""
-        self.resources = resources
+        self.resources, self.nodes = resources, nodes
+        self.said = self._all_said()
         for name in self._build_order():
             if name in nodes:
                 self._expand_pass(name, nodes[name])
@@ -90,7 +109,10 @@ class PassBuilder:
             len(self.findings.errors),
         )
         features, folder = self.features or NO_SCENE, self.findings.folder
-        builder = Builder(name, node.folder, folder, self.frame, features, self.full, found.inputs, found.outputs, at)
+        builder = Builder(
+            name, node.folder, folder, self.frame, features, self.full, found.inputs, found.outputs, at,
+            {port: self._held(resource) for port, resource in found.inputs.items()},
+        )  # fmt: skip
         try:
             node.build(builder)
             check_subpasses(name, node, builder, self.features is not None, self.findings)
@@ -102,6 +124,10 @@ class PassBuilder:
             self.internal[name] = builder.resources
             self.passes[name] = Pass(name, node.name, tuple(builder.subpasses), model.after, model.keep, at)
             self.decisions += builder.decisions
+            self.narrowed[name] = builder.narrowed
+            if not builder.subpasses:
+                because = sorted({f"{d.reason} {d.evidence.get('feature', '')}".strip() for d in builder.decisions})
+                self.decisions.append(Decision("specialise", "pass_left_out", name, {"because": because}))
             evidence = {"node": node.name, "steps": tuple(s.name for s in builder.subpasses)}
             self.decisions.append(Decision("expand", "node_expanded", name, evidence))
 

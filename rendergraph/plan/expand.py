@@ -12,6 +12,7 @@ from rendergraph.plan.build_passes import PassBuilder
 from rendergraph.plan.check_whole import barrier_intents, check_outputs, check_use
 from rendergraph.plan.findings import Findings, SourceDocument
 from rendergraph.plan.graph import Decision, Frame, Graph, Kind, Resource
+from rendergraph.plan.narrow_formats import narrow_formats
 from rendergraph.plan.output_formats import undeclared_outputs
 from rendergraph.plan.resolve_resources import ResourceResolver
 from rendergraph.scene.features import SceneFeatures
@@ -97,6 +98,7 @@ def _graph(findings: Findings, frame: Frame, builder: PassBuilder) -> Graph:
     used = check_use(findings, builder.resources)
     resources = internal | {name: r for name, r in builder.resources.items() if r is not None and name in used}
     check_outputs(findings, builder.resources, internal, builder.passes)
+    resources |= narrow_formats(resources, builder.passes, builder.narrowed, builder.decisions)
     return Graph(
         frame,
         dict(sorted(resources.items())),

@@ -20,6 +20,21 @@ SENTENCES: Final[Mapping[tuple[str, str], tuple[str, ...]]] = {
     ("expand", "kept_for_history"): ("{subject} is kept to the next frame, where {history} shows it",),
     ("expand", "kept_for_output"): ("{subject} is kept to the end of the frame, to be written to {file}",),
     ("specialise", "scene_lacks_feature"): ("{subject} is left out or simplified: the scene has no {feature}",),
+    ("specialise", "none_in_view"): ("{subject} is left out or simplified: nothing {feature} comes into view",),
+    ("specialise", "no_light_reaches_the_view"): (
+        "{subject} leaves out local lights: none of the {lights} reaches what is in view",
+    ),
+    ("specialise", "nothing_casts_into_view"): (
+        "{subject} is left out: nothing solid stands between the sun and what is in view",
+    ),
+    ("specialise", "shadows_end_before_the_view"): (
+        "{subject} is left out: shadows end at {distance} m, and all in view is beyond {nearest} m",
+    ),
+    ("specialise", "scene_covers_the_frame"): ("{subject} is left out: opaque geometry covers the whole frame",),
+    ("specialise", "format_narrowed"): (
+        "{subject} is {to} in place of {from}, without loss: {by} has nothing more to put into it, {saved} bytes less",
+    ),
+    ("specialise", "pass_left_out"): ("{subject} is left out whole: it has nothing to do in this scene ({because})",),
     ("cull", "writes_nothing"): ("{subject} is culled: it writes nothing",),
     ("cull", "nothing_reads_it"): ("{subject} is culled: nothing reads {writes}, and it is no output",),
     ("cull", "overwritten_before_read"): (
@@ -32,6 +47,7 @@ SENTENCES: Final[Mapping[tuple[str, str], tuple[str, ...]]] = {
     ("cull", "only_culled_passes_use_it"): ("{subject} is not allocated: only {by} used it, and is culled",),
     ("order", "depth_first_from_outputs"): ("the order is depth first from the outputs, ties broken by name",),
     ("order", "random_legal_order"): ("the order is a random legal one, from seed {seed}",),
+    ("order", "as_listed"): ("the order is the one listed",),
     ("order", "memory_search_improved"): (
         "the order was searched for memory: {trials} trials lowered the peak from {load_before} to {load} bytes",
     ),

@@ -14,7 +14,7 @@ from rendergraph.plan.plan import PlanOptions
 def order(index: Index, flow: Flow, live: list[bool], options: PlanOptions) -> tuple[list[int], list[Decision]]:
     """The live sub-passes in the order ``options.order`` asks for; the same for any order of the file.
 
-    ``ValueError`` for an unknown kind of order.
+    ``ValueError`` for an unknown kind of order, and for a list that is no legal order of what runs.
     """
     needs = [sorted(set(found)) for found in find_needs(index, flow, live)]
     default = _depth_first(index, flow, needs, live)
@@ -30,7 +30,9 @@ def order(index: Index, flow: Flow, live: list[bool], options: PlanOptions) -> t
         before, after = search.cost(default)[0], search.cost(found)[0]
         reason = "memory_search_improved" if after < before else "memory_search_found_no_better"
         return found, [Decision("order", reason, "frame", {"trials": trials, "load_before": before, "load": after})]
-    raise ValueError(f"no order '{options.order}': choose default, memory or random")
+    if options.order == "listed":
+        return _listed(index, needs, live, options.sequence), [Decision("order", "as_listed", "frame")]
+    raise ValueError(f"no order '{options.order}': choose default, memory, random or listed")
 
 
 def _depth_first(index: Index, flow: Flow, needs: list[list[int]], live: list[bool]) -> list[int]:
@@ -62,3 +64,17 @@ def _depth_first(index: Index, flow: Flow, needs: list[list[int]], live: list[bo
                     waiting.sort(key=lambda n: (pass_of[n] != own, depth[n], -n))
                 stack += waiting
     return result
+
+
+def _listed(index: Index, needs: list[list[int]], live: list[bool], sequence: tuple[str, ...]) -> list[int]:
+    """Sub-passes by name, each after all it needs."""
+    number = {subpass.name: i for i, subpass in enumerate(index.subpasses) if live[i]}
+    if sorted(number) != sorted(sequence):
+        raise ValueError("the list does not name each sub-pass that runs once")
+    found = [number[name] for name in sequence]
+    place = {s: at for at, s in enumerate(found)}
+    for s in found:
+        for earlier in needs[s]:
+            if place[earlier] > place[s]:
+                raise ValueError(f"{index.subpasses[s].name} is listed before {index.subpasses[earlier].name}")
+    return found

@@ -11,7 +11,8 @@ from rendergraph.plan.graph import Decision, Graph, SubPass, TextureDesc
 @dataclass(frozen=True, slots=True)
 class PlanOptions:
     """How to plan. ``order``: ``default`` (deterministic), ``memory`` (a search of ``order_budget`` trials for the
-    smallest peak) or ``random`` (a legal random order from ``seed``, for testing).
+    smallest peak), ``random`` (a legal random order from ``seed``, for testing) or ``listed`` (``sequence``, the names
+    of all sub-passes that run).
     """
 
     alias: bool = True
@@ -19,6 +20,7 @@ class PlanOptions:
     order: str = "default"
     order_budget: int = 200
     seed: int = 0
+    sequence: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

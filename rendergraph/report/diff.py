@@ -15,10 +15,12 @@ from rendergraph.measure.statistics import (
     compare_runs,
 )
 from rendergraph.report.diff_counts import common_steps, compare_bounds, compare_counts, compare_passes
+from rendergraph.report.diff_errors import compare_errors
 from rendergraph.report.diff_exact import Direction, ExactChange, compare_resources, worst_first
 from rendergraph.report.diff_images import TOLERANCE, ImageChange, compare_image_files
 from rendergraph.report.diff_names import Matching, match_passes
 from rendergraph.report.read_records import Record, Times, read_pair, read_record
+from rendergraph.report.record_models import AccuracyRecord
 
 #: The name of the whole frame among the passes; no pass can have it.
 FRAME: Final = ""
@@ -103,6 +105,10 @@ def compare_records(a: Record, b: Record, options: DiffOptions, *, paired: bool 
         warnings += _too_few(times, paired=paired)
     if a.resources and b.resources:
         exact += compare_resources(a.resources, b.resources, names)
+    if a.accuracy and b.accuracy:
+        if not (a.times and b.times):
+            names = match_passes(_judged_nodes(a.accuracy), _judged_nodes(b.accuracy))
+        exact += compare_errors(a.accuracy, b.accuracy, names)
     images = compare_image_files(a.images, b.images, options.image_tolerance) if "images" in compared else []
     return Comparison(
         a.name,
@@ -122,11 +128,13 @@ def _common(a: Record, b: Record) -> set[str]:
         compared |= {"time", "exact"}
     if a.resources and b.resources:
         compared.add("exact")
+    if a.accuracy and b.accuracy:
+        compared.add("exact")
     if a.images and b.images:
         compared.add("images")
     if not compared & {"time", "exact"}:
         reason = f"'{b.name}' holds other kinds of records"
-        hint = "compare two folders, two timing.json, two resources.json, or bench files"
+        hint = "compare two folders, two records of a kind, or bench files"
         raise RenderGraphError([diagnose("RG737", name=a.name, reason=reason, hint=hint)], exit_code=2)
     return compared
 
@@ -147,12 +155,23 @@ def _check_setup(a: Record, b: Record, *, force: bool) -> list[Diagnostic]:
 def _setup(record: Record, other: Record) -> dict[str, str]:
     if record.times and other.times:
         return record.times.setup
+    if record.accuracy and other.accuracy:  # rasterisers round differently
+        device = record.accuracy.device
+        return {"renderer": device.renderer, "driver": device.driver, "size": _extent(record.accuracy.size)}
     assert record.resources is not None
-    return {"size": "x".join(str(extent) for extent in record.resources.size)}
+    return {"size": _extent(record.resources.size)}
+
+
+def _extent(size: list[int]) -> str:
+    return "x".join(str(extent) for extent in size)
 
 
 def _nodes(times: Times) -> dict[str, str]:
     return {name: entry.node for name, entry in times.passes.items()}
+
+
+def _judged_nodes(record: AccuracyRecord) -> dict[str, str]:
+    return {entry.name: entry.node for entry in record.passes}
 
 
 def _compare_times(a: Times, b: Times, names: Matching, thresholds: Thresholds, *, paired: bool) -> list[TimeChange]:

@@ -24,8 +24,8 @@ class Direction(StrEnum):
 class ExactChange:
     """One exact difference. ``before`` and ``after`` are JSON-ready; ``text`` says it in words.
 
-    ``kind``: total, resource, sharing, lifetime, slots, barrier, order, subpass, pass, culled, counter, steady_state or
-    bound (told from measurements, but one of four classes).
+    ``kind``: error, total, resource, sharing, lifetime, slots, barrier, order, subpass, pass, culled, counter,
+    steady_state or bound (told from measurements, but one of four classes).
     """
 
     kind: str
@@ -45,7 +45,8 @@ class ExactChange:
 
 #: Kinds from the most to the least telling.
 KINDS: Final = (
-    "total", "resource", "barrier", "counter", "steady_state", "bound", "culled", "pass", "subpass", "order", "slots",
+    "error", "total", "resource", "barrier", "counter", "steady_state", "bound", "culled", "pass", "subpass", "order",
+    "slots",
     "sharing", "lifetime",
 )  # fmt: skip
 _DIRECTIONS: Final = (Direction.WORSE, Direction.CHANGED, Direction.BETTER)

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from rendergraph.document.messages import RenderGraphError, diagnose
-from rendergraph.measure.image_metrics import ImageError, Pixels, compare_images
+from rendergraph.measure.metrics.images import ImageError, Pixels, compare_images
 from rendergraph.run.image_files import read_image, require_writer
 
 #: Root mean square error, as a share of the range, that counts as a different image: half an 8-bit step.

@@ -1,4 +1,4 @@
-"""Reads records to compare: a folder of ``rg render``, a timing.json, a resources.json, or a side of a bench file.
+"""Reads records to compare: a folder of ``rg render``, one of its records, or a side of a bench file.
 
 A bench file is JSON with ``schema: rendergraph.bench/1``::
 
@@ -37,7 +37,7 @@ from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.document.output_files import IMAGE_SUFFIXES
 from rendergraph.measure.run_shift import Runs
 from rendergraph.report.record_files import RENDER_HINT, read_record_file, unreadable
-from rendergraph.report.record_models import BenchRecord, BoundModel, ResourcesRecord, TimingRecord
+from rendergraph.report.record_models import AccuracyRecord, BenchRecord, BoundModel, ResourcesRecord, TimingRecord
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -75,6 +75,7 @@ class Record:
     times: Times | None = None
     resources: ResourcesRecord | None = None
     images: dict[str, Path] = field(default_factory=dict)
+    accuracy: AccuracyRecord | None = None
 
 
 def read_record(place: str) -> Record:
@@ -91,6 +92,8 @@ def read_record(place: str) -> Record:
         return Record(place, _stored_times(model), model.resources)
     if isinstance(model, ResourcesRecord):
         return Record(place, resources=model)
+    if isinstance(model, AccuracyRecord):
+        return Record(place, accuracy=model)
     assert isinstance(model, BenchRecord), kind
     if wanted is None and len(model.sides) > 1:
         raise _cannot_compare(place, "it has two sides", f"give it alone, or a side of it: {place}@A or {place}@B")
@@ -127,12 +130,14 @@ def _read_folder(folder: Path) -> Record:
     timing, resources = folder / "timing.json", folder / "resources.json"
     if not timing.exists() and not resources.exists():
         raise unreadable(folder, "the folder has neither timing.json nor resources.json", RENDER_HINT)
-    times = kept = None
+    times = kept = judged = None
     if timing.exists():
         times = _stored_times(_expect(timing, TimingRecord))
     if resources.exists():
         kept = _expect(resources, ResourcesRecord)
-    return Record(str(folder), times, kept, dict(_images(folder)))
+    if (folder / "accuracy.json").exists():
+        judged = _expect(folder / "accuracy.json", AccuracyRecord)
+    return Record(str(folder), times, kept, dict(_images(folder)), judged)
 
 
 def _images(folder: Path) -> Iterator[tuple[str, Path]]:

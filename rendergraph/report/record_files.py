@@ -11,11 +11,12 @@ from pydantic import BaseModel, ValidationError
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.document.suggest import did_you_mean
 from rendergraph.plan.graph import Position
-from rendergraph.report.record_models import BenchRecord, ResourcesRecord, TimingRecord
+from rendergraph.report.record_models import AccuracyRecord, BenchRecord, ResourcesRecord, TimingRecord
 
 _MODELS: Final[dict[str, type[BaseModel]]] = {
     "timing": TimingRecord,
     "resources": ResourcesRecord,
+    "accuracy": AccuracyRecord,
     "bench": BenchRecord,
 }
 _VERSION: Final = 1
@@ -24,7 +25,7 @@ RENDER_HINT: Final = "give a folder written by `rg render`, a record in it, or a
 
 
 def read_record_file(path: Path) -> tuple[str, BaseModel]:
-    """The record's kind (timing, resources, bench), and the record checked.
+    """The record's kind (timing, resources, accuracy, bench), and the record checked.
 
     :raises RenderGraphError: RG730 to RG735, see :func:`rendergraph.report.read_records.read_record`.
     """

@@ -5,7 +5,7 @@ A record may come from anywhere: everything is checked here, once, and nothing i
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -157,6 +157,55 @@ class TimingRecord(_Part):
     def _no_twins(self) -> TimingRecord:
         _refuse_twins([entry.name for entry in self.passes])
         _refuse_twins([step.name for entry in self.passes for step in entry.subpasses])
+        return self
+
+
+#: An error: a number, one that JSON has not by name, or nothing where there was nothing to compare.
+Error = Annotated[float, Field(allow_inf_nan=False)] | Literal["inf", "-inf", "nan"] | None
+
+
+class MeasureModel(_Part):
+    """What a reference judged, by its metric."""
+
+    name: Label
+    metric: Label
+    value: Error
+    tolerance: Annotated[float, Field(allow_inf_nan=False)]
+    verdict: Literal["within", "above", "cannot_judge"]
+    z_test: dict[str, Any] | None = None
+
+
+class PassErrorsModel(_Part):
+    """A pass, held against its reference."""
+
+    name: Label
+    node: Label = ""
+    broken: list[str] = []
+    measures: list[MeasureModel]
+
+    @model_validator(mode="after")
+    def _no_twins(self) -> PassErrorsModel:
+        _refuse_twins([measure.name for measure in self.measures])
+        return self
+
+
+class JudgedDeviceModel(_Part):
+    """Who ran what was judged."""
+
+    renderer: Label
+    driver: Label
+
+
+class AccuracyRecord(_Part):
+    """``accuracy.json``, schema ``rendergraph.accuracy/1``."""
+
+    size: Size
+    device: JudgedDeviceModel
+    passes: list[PassErrorsModel]
+
+    @model_validator(mode="after")
+    def _no_twins(self) -> AccuracyRecord:
+        _refuse_twins([entry.name for entry in self.passes])
         return self
 
 

@@ -12,18 +12,29 @@ from typing import Any, Final
 from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import CoreSchema
 
+from rendergraph.report.accuracy_shape import AccuracyRecord
+from rendergraph.report.attribution_shape import AttributionRecord
 from rendergraph.report.record_shape import Head
 from rendergraph.report.resources_shape import ResourcesRecord
+from rendergraph.report.stress_shape import StressRecord
+from rendergraph.report.sweep_shape import SweepRecord
 from rendergraph.report.timing_shape import TimingRecord
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
 #: The records by the name of their file.
-RECORDS: Final[dict[str, type[Head]]] = {"timing": TimingRecord, "resources": ResourcesRecord}
+RECORDS: Final[dict[str, type[Head]]] = {
+    "timing": TimingRecord,
+    "resources": ResourcesRecord,
+    "accuracy": AccuracyRecord,
+    "sweep": SweepRecord,
+    "attribution": AttributionRecord,
+    "stress": StressRecord,
+}
 
 
 def record_schema(name: str) -> dict[str, Any]:
-    """The JSON Schema of ``timing.json`` or ``resources.json``, by the name without its ending."""
+    """The JSON Schema of a record, by its name in ``RECORDS``."""
     model = RECORDS[name]
     schema = model.model_json_schema(schema_generator=_Untitled)
     version = schema["properties"]["schema"]["const"]

@@ -6,6 +6,7 @@ import os
 import platform
 import re
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -71,6 +72,19 @@ def timing_record(result: FrameResult, title: str = "", bound: dict[str, Any] | 
         },
         "bound": bound,
         "driver_warnings": driver_warnings(result.warnings),
+        **switches_record(result),
+    }
+
+
+def switches_record(result: FrameResult) -> dict[str, Any]:
+    """Which plan ran from which frame on; nothing for a scene that does not change."""
+    if not result.switches:
+        return {}
+    return {
+        "switches": [
+            {**asdict(s), "history_kept": list(s.history_kept), "history_cleared": list(s.history_cleared)}
+            for s in result.switches
+        ]
     }
 
 

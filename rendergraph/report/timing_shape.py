@@ -98,6 +98,19 @@ class SteadyRecord(Part):
     bytes_uploaded: Bytes
 
 
+class SwitchRecord(Part):
+    """A frame before which the scene changed, and what that took."""
+
+    frame: Count
+    plan: Count = Field(description="Number of the plan that runs from here on; 0 is the first frame's.")
+    revisited: bool = Field(description="It ran before.")
+    objects_created: Count
+    programs_compiled: Count
+    bytes_uploaded: Bytes
+    history_kept: list[str] = Field(description="Histories handed on from the plan before.")
+    history_cleared: list[str] = Field(description="Histories that it did not have: they start from zeros.")
+
+
 class RoundRecord(Part):
     """A round of perturbed frames handed over back to back, a frame."""
 
@@ -184,3 +197,4 @@ class TimingRecord(Head):
     steady_state: SteadyRecord
     bound: BoundRecord | None = Field(description="null unless perturbed runs were asked for.")
     driver_warnings: list[DriverWarningRecord] = Field(description="Each once.")
+    switches: list[SwitchRecord] = Field(default=[], description="Where the scene changed; absent where it did not.")

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rendergraph.document.load import Document
 from rendergraph.document.whole_files import whole_file
-from rendergraph.report.html import TargetGallery, html_page, write_page
+from rendergraph.measure.truth.accuracy import PassAccuracy
+from rendergraph.report.accuracy import accuracy_record, write_variances
+from rendergraph.report.html import ErrorGallery, TargetGallery, html_page, write_page
+from rendergraph.report.html.accuracy import accuracy_entries
 from rendergraph.report.memory_advice import advise
 from rendergraph.report.resources import resources_record
 from rendergraph.report.tables import lifetime_table, timing_table
@@ -26,6 +30,7 @@ class WrittenResult:
     timing: dict[str, Any]
     resources: dict[str, Any]
     files: tuple[Path, ...]
+    accuracy: dict[str, Any] | None = None
 
     def _repr_html_(self) -> str:
         from rendergraph.report.notebook import tables_html
@@ -41,11 +46,14 @@ def write_result(
     page: TargetGallery | None = None,
     trace: bool = False,
     full: bool = False,
+    judged: Sequence[PassAccuracy] | None = None,
+    errors: ErrorGallery | None = None,
     bound: dict[str, Any] | None = None,
 ) -> WrittenResult:
-    """Write outputs, captures, ``timing.json`` and ``resources.json``, with ``page`` (the targets it shows)
-    ``report.html``, and with ``trace`` ``trace.json``. Each file is whole or absent. ``full``: the graph
-    was not specialised on its scene. ``bound``: what perturbed runs found, for the timing record.
+    """Write outputs, captures, ``timing.json`` and ``resources.json``, with ``judged`` (passes held against their
+    references) ``accuracy.json``, with ``page`` (the targets it shows; ``errors`` the error maps) ``report.html``, and
+    with ``trace`` ``trace.json``. Each file is whole or absent. ``full``: the graph was not specialised on its scene.
+    ``bound``: what perturbed runs found, for the timing record.
     """
     files = []
     for name, file in result.files.items():
@@ -62,20 +70,27 @@ def write_result(
         advice=advise(document, result.plan, full=full),
         created=(watched, result.steady.objects_created),
     )
-    for stem, record in (("timing", timing), ("resources", resources)):
+    records = {"timing": timing, "resources": resources}
+    accuracy = None
+    if judged is not None:
+        accuracy = records["accuracy"] = accuracy_record(judged, result.plan.graph.frame, timing, resources)
+        files += write_variances(folder, judged)
+    for stem, record in records.items():
         path = folder / f"{stem}.json"
         write_json(path, record)
         files.append(path)
     title = document.model.title or document.path.stem
     if page is not None:
         files.append(folder / "report.html")
-        write_page(
-            files[-1], html_page(result.plan, title=title, timing=timing, targets=page, warnings=result.warnings)
+        entries = accuracy_entries(accuracy, errors or ErrorGallery()) if accuracy is not None else None
+        text = html_page(
+            result.plan, title=title, timing=timing, targets=page, warnings=result.warnings, accuracy=entries
         )
+        write_page(files[-1], text)
     if trace:
         files.append(folder / "trace.json")
         write_trace(files[-1], result, title)
-    return WrittenResult(timing, resources, tuple(files))
+    return WrittenResult(timing, resources, tuple(files), accuracy)
 
 
 def write_json(path: Path, record: dict[str, Any]) -> None:

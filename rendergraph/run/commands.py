@@ -14,6 +14,7 @@ from rendergraph.device.framebuffers import Framebuffer, clear_color, clear_dept
 from rendergraph.device.gl import Call
 from rendergraph.device.host_copies import buffer_through_host, texture_through_host
 from rendergraph.device.programs import LinkedProgram
+from rendergraph.device.texels import Poison
 from rendergraph.device.textures import (
     Texture,
     clear_texture,
@@ -51,15 +52,26 @@ _TOPOLOGY = {"points": 0, "lines": 1, "line_strip": 3, "triangles": 4, "triangle
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A sub-pass ready to run: its calls, inside its debug group."""
+    """A sub-pass ready to run: its calls, inside its debug group. The first ``poisoning`` of them fill what is used
+    here for the first time.
+    """
 
     subpass: SubPass
     scope: Scope
     calls: tuple[Call, ...]
+    poisoning: int = 0
 
     def run(self) -> None:
         """Make the calls."""
         self.scope.run(self.calls)
+
+    def run_poisoning(self) -> None:
+        """Make the calls that poison."""
+        self.scope.run(self.calls[: self.poisoning])
+
+    def run_work(self) -> None:
+        """Make the others."""
+        self.scope.run(self.calls[self.poisoning :])
 
 
 class CommandBuilder:
@@ -74,7 +86,7 @@ class CommandBuilder:
         programs: dict[str, LinkedProgram],
         parity: int,
         *,
-        poison: bool,
+        poison: Poison | None,
     ) -> None:
         self._device = device
         self._plan = plan
@@ -96,13 +108,14 @@ class CommandBuilder:
             first_use.setdefault(life.first, []).append(name)
         commands = []
         for index, subpass in enumerate(self._plan.order):
-            if self._poison:
-                self._poison_all(first_use.get(index, ()))
+            if self._poison is not None:
+                self._poison_all(first_use.get(index, ()), self._poison)
+            poisoning = len(self._recorder.calls)
             if index in before:
                 self._barrier(before[index])
             self._work(subpass)
             scope = self._device.scope(subpass.name, subpass.position)
-            commands.append(Command(subpass, scope, self._recorder.take()))
+            commands.append(Command(subpass, scope, self._recorder.take(), poisoning))
         return commands
 
     # ---- around the work
@@ -113,16 +126,16 @@ class CommandBuilder:
         if barrier.texture_barrier:
             self._recorder.call(self._device.gl.glTextureBarrier)
 
-    def _poison_all(self, names: Sequence[str]) -> None:
+    def _poison_all(self, names: Sequence[str], poison: Poison) -> None:
         transient = [name for name in names if self._plan.graph.resources[name].kind is Kind.TRANSIENT]
         if transient:
             # The plan's barriers are for the plan's accesses: this write to memory others have just used is not one.
             self._recorder.call(self._device.gl.glMemoryBarrier, enums.ALL_BARRIER_BITS)
         for name in transient:
             if self._storage.is_texture(name):
-                self._recorder.call(poison_texture, self._device, self._texture(name))
+                self._recorder.call(poison_texture, self._device, self._texture(name), poison)
             else:
-                self._recorder.call(poison_buffer, self._device, self._buffer(name))
+                self._recorder.call(poison_buffer, self._device, self._buffer(name), poison)
 
     def _texture(self, name: str) -> Texture:
         return self._storage.texture(name, self._parity)

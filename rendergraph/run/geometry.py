@@ -6,27 +6,17 @@ a moving camera uploads nothing either.
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
+from dataclasses import dataclass
 
 from rendergraph.device import enums
-from rendergraph.device.buffers import Buffer, create_buffer
+from rendergraph.device.buffers import Buffer, create_buffer, upload_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.programs import LinkedProgram
-from rendergraph.device.textures import Texture, create_texture, upload_texture
-from rendergraph.plan.graph import Target, TextureDesc
-from rendergraph.run.batches import Batch, cut_batches
+from rendergraph.run.batches import Batch, Batches, cut_batches
+from rendergraph.run.scene_store import PAD, SceneStore
 from rendergraph.run.vertex_inputs import create_vertex_array
 from rendergraph.scene.draw_queues import draw_runs
-from rendergraph.scene.gpu_layout import (
-    TexturePlacement,
-    pack_instances,
-    pack_lights,
-    pack_materials,
-    place_textures,
-)
+from rendergraph.scene.gpu_layout import pack_instances, pack_lights, place_textures
 from rendergraph.scene.scene import Camera, Scene
 
 COMMAND_BYTES = 20
@@ -37,46 +27,86 @@ COMMAND_BUDGET = 64 * 2**20
 LIGHT_BUDGET = 64 * 2**20
 
 
+@dataclass(frozen=True, slots=True)
+class _DrawOrder:
+    """Draw commands sorted for every eye, one block after another; each block's batches (where blended draws of unlike
+    state change places, their runs are cut elsewhere); and each frame's block.
+    """
+
+    packed: bytes
+    batches: tuple[Batches, ...]
+    block_bytes: int
+    block_of: tuple[int, ...]
+
+
 class SceneGeometry:
     """The uploaded scene. ``blocks`` are the blocks a shader may name; of ``textures``, :meth:`draw` binds those that
     a batch needs as ``u_textures``.
     """
 
-    def __init__(self, device: Device, scene: Scene, cameras: list[Camera], replays: frozenset[int]) -> None:
-        """``replays``: the instance counts that scene draws of the plan use (1, or the number of cascades)."""
+    def __init__(
+        self,
+        device: Device,
+        scene: Scene,
+        cameras: list[Camera],
+        replays: frozenset[int],
+        store: SceneStore | None = None,
+    ) -> None:
+        """``replays``: the instance counts that scene draws of the plan use (1, or the number of cascades). ``store``
+        holds the scene's vertices and textures already; it may be shared.
+        """
         self._device = device
         self._gl = device.gl
-        attributes = np.concatenate([scene.normals, scene.tangents, scene.uv0, scene.uv1, scene.colors], axis=1)
-        # Drawing an empty scene is legal and draws nothing, but GL wants every buffer to have at least one byte.
-        pad = np.zeros(16, dtype=np.uint32)
-        self._positions = create_buffer(device, _bytes(scene.positions, pad), "scene positions")
-        self._attributes = create_buffer(device, _bytes(attributes.astype(np.float32), pad), "scene attributes")
-        self._indices = create_buffer(device, _bytes(scene.indices, pad), "scene indices")
-        placement = place_textures(scene)
-        self.textures = _upload_textures(device, placement)
+        self._store = store or SceneStore(device, scene)
+        self.lights_move = _move(scene, cameras)
+        self._lights_packed = self._all_lights(scene, len(cameras), self.lights_move)
+        self._instances_packed = pack_instances(scene) or PAD.tobytes() * 2
+        self.textures, materials = self._store.materials(scene)
         self.blocks: dict[str, Buffer] = {
-            "Instances": create_buffer(device, pack_instances(scene) or pad.tobytes() * 2, "Instances"),
-            "Materials": create_buffer(device, pack_materials(scene, placement) or pad.tobytes() * 4, "Materials"),
-            "Lights": self._pack_lights(scene, len(cameras)),
+            "Instances": create_buffer(device, self._instances_packed, "Instances"),
+            "Materials": materials,
+            "Lights": create_buffer(device, self._lights_packed, "Lights"),
         }
         self._vertex_arrays: dict[tuple[tuple[str, int], ...], int] = {}
-        self._build_commands(scene, cameras, replays, placement)
+        self._replays = replays
+        self._order = self._sorted_commands(scene, cameras)
+        self._commands_packed = self._order.packed
+        self._commands = create_buffer(device, self._commands_packed, "scene draw commands")
         self._block = 0
+
+    def change(self, scene: Scene, cameras: list[Camera]) -> bool:
+        """Upload what differs of another state of the scene, seen by other cameras: lights and the order of draws.
+        False, and nothing is done, where the instances, the number of lights, or whether any moves, are others.
+        """
+        order = self._sorted_commands(scene, cameras)
+        lights_move = _move(scene, cameras)
+        lights = self._all_lights(scene, len(cameras), lights_move)
+        if (pack_instances(scene) or PAD.tobytes() * 2, lights_move) != (self._instances_packed, self.lights_move):
+            return False
+        if len(order.packed) > len(self._commands_packed) or len(lights) != len(self._lights_packed):
+            return False
+        self._order = order
+        if lights != self._lights_packed:
+            upload_buffer(self._device, self.blocks["Lights"], lights)
+            self._lights_packed = lights
+        if order.packed != self._commands_packed[: len(order.packed)]:
+            upload_buffer(self._device, self._commands, order.packed)
+            self._commands_packed = order.packed + self._commands_packed[len(order.packed) :]
+        return True
 
     # ---- lights
 
-    def _pack_lights(self, scene: Scene, frames: int) -> Buffer:
+    def _all_lights(self, scene: Scene, frames: int, move: bool) -> bytes:
         """The lights of every frame one after another, or once for all where none moves."""
-        self.lights_move = frames > 1 and any(light.circle for light in scene.lights)
         first = pack_lights(scene)
         # Storage ranges may start only at multiples of 256 (the GL maximum).
         self._light_stride = -(-len(first) // 256) * 256
-        kept = min(frames, max(1, LIGHT_BUDGET // self._light_stride)) if self.lights_move else 1
+        kept = min(frames, max(1, LIGHT_BUDGET // self._light_stride)) if move else 1
         self._light_block = [frame * kept // frames for frame in range(frames)] or [0]
         blocks = [pack_lights(scene, block / kept).ljust(self._light_stride, b"\0") for block in range(kept)]
         self._light_bytes = len(first)
         self._light_offset = 0
-        return create_buffer(self._device, b"".join(blocks) if self.lights_move else first, "Lights")
+        return b"".join(blocks) if move else first
 
     def bind_lights(self, target: int, binding: int) -> None:
         """Let a binding point of storage or uniform blocks see this frame's lights."""
@@ -84,34 +114,35 @@ class SceneGeometry:
 
     # ---- draw commands
 
-    def _build_commands(
-        self, scene: Scene, cameras: list[Camera], replays: frozenset[int], placement: TexturePlacement
-    ) -> None:
+    def _sorted_commands(self, scene: Scene, cameras: list[Camera]) -> _DrawOrder:
         eyes = [camera.position for camera in cameras]
         distinct = list(dict.fromkeys(eyes))
-        per_frame = max(1, len(scene.instances) * COMMAND_BYTES * len(replays))
+        per_frame = max(1, len(scene.instances) * COMMAND_BYTES * len(self._replays))
         kept = distinct[:: max(1, -(-len(distinct) * per_frame // COMMAND_BUDGET))]
-        # Of each eye: where blended draws of unlike state change places, their runs are cut elsewhere.
-        names = [texture.glo for texture in self.textures]
-        cut = [cut_batches(draw_runs(scene, eye, placement), replays, names) for eye in kept]
-        self._batches = [batches for batches, _ in cut]
+        placement, names = place_textures(scene), [texture.glo for texture in self.textures]
+        cut = [cut_batches(draw_runs(scene, eye, placement), self._replays, names) for eye in kept]
         blocks = [commands for _, commands in cut]
-        self._frame_bytes = len(blocks[0]) if blocks else 0
-        self._commands = create_buffer(self._device, b"".join(blocks) or bytes(COMMAND_BYTES), "scene draw commands")
         where = {eye: index for index, eye in enumerate(kept)}
-        nearest, self._frame_block = 0, []
+        nearest, block_of = 0, []
         for eye in eyes:
             nearest = where.get(eye, nearest)
-            self._frame_block.append(nearest)
+            block_of.append(nearest)
+        return _DrawOrder(
+            b"".join(blocks) or bytes(COMMAND_BYTES),
+            tuple(batches for batches, _ in cut),
+            len(blocks[0]) if blocks else 0,
+            tuple(block_of),
+        )
 
     def begin_frame(self, index: int) -> None:
         """Use the commands sorted for this frame's camera."""
-        self._block = self._frame_block[min(index, len(self._frame_block) - 1)] if self._frame_block else 0
+        block_of = self._order.block_of
+        self._block = block_of[min(index, len(block_of) - 1)] if block_of else 0
         self._light_offset = self._light_block[min(index, len(self._light_block) - 1)] * self._light_stride
 
     def batches(self, queue: str, replays: int) -> tuple[Batch, ...]:
         """This frame's batches of a queue; none for a frame without a camera."""
-        return self._batches[self._block][queue, replays] if self._batches else ()
+        return self._order.batches[self._block][queue, replays] if self._order.batches else ()
 
     def draw(self, queue: str, replays: int, cull: str, texture_units: range, patches: bool) -> None:
         """Issue this frame's batches of a queue with the program that is bound.
@@ -122,7 +153,7 @@ class SceneGeometry:
         """
         gl = self._gl
         mode = enums.PATCHES if patches else enums.TRIANGLES
-        frame = self._block * self._frame_bytes
+        frame = self._block * self._order.block_bytes
         # An indirect draw of this frame's own arguments may have bound another buffer.
         gl.glBindBuffer(enums.DRAW_INDIRECT_BUFFER, self._commands.glo)
         gl.glCullFace(enums.FRONT if cull == "front" else enums.BACK)
@@ -149,28 +180,11 @@ class SceneGeometry:
         inputs = tuple(sorted(program.attributes.items()))
         if inputs in self._vertex_arrays:
             return self._vertex_arrays[inputs]
-        streams = self._positions, self._attributes, self.blocks["Instances"]
-        self._vertex_arrays[inputs] = create_vertex_array(self._device, inputs, streams, self._indices)
+        streams = self._store.positions, self._store.attributes, self.blocks["Instances"]
+        self._vertex_arrays[inputs] = create_vertex_array(self._device, inputs, streams, self._store.indices)
         return self._vertex_arrays[inputs]
 
 
-def _bytes(array: npt.NDArray[Any], pad: npt.NDArray[Any]) -> bytes:
-    return np.ascontiguousarray(array).tobytes() or pad.tobytes()
-
-
-def _upload_textures(device: Device, placement: TexturePlacement) -> list[Texture]:
-    textures = []
-    for index, array in enumerate(placement.arrays):
-        desc = TextureDesc(
-            "srgb8_a8" if array.srgb else "rgba8",
-            array.size,
-            array.size,
-            layers=len(array.images),
-            mips=array.size.bit_length(),
-            target=Target.D2_ARRAY,
-        )
-        texture = create_texture(device, desc, f"u_textures[{index}]")
-        for mip, level in enumerate(array.levels()):
-            upload_texture(device, texture, level, mip=mip)
-        textures.append(texture)
-    return textures
+def _move(scene: Scene, cameras: list[Camera]) -> bool:
+    """Whether lights move over frames of these cameras."""
+    return len(cameras) > 1 and any(light.circle for light in scene.lights)

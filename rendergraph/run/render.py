@@ -3,48 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 
 from rendergraph.device.clock import choose_clock
 from rendergraph.device.context import Device, open_device
 from rendergraph.document.load import Document
 from rendergraph.document.messages import RenderGraphError, diagnose
-from rendergraph.plan.plan import PlanOptions
 from rendergraph.run.image_files import capture_files, require_writer
-from rendergraph.run.plan_document import PlannedDocument, plan_document
+from rendergraph.run.options import Progress, RenderOptions
+from rendergraph.run.plan_document import PlannedDocument, plan_document, scene_cameras
 from rendergraph.run.result import DeviceFacts, FrameResult, Pixels, RunTimes, SteadyState
-from rendergraph.run.runner import Inspect, Runner
-from rendergraph.scene.cameras import orbit
+from rendergraph.run.session import Session
 from rendergraph.scene.scene import Camera
 
-Progress = Callable[[str, int, int], None]
+__all__ = ["Progress", "RenderOptions", "frame_cameras", "render_document", "run_plan"]
 
 #: Frames run again before timing, so that no pass is timed while the driver still compiles a variant of it.
 WARM_UP = 1
-
-
-@dataclass(frozen=True, slots=True)
-class RenderOptions:
-    """How to run a document. ``size``, ``frames`` and ``scene`` replace the file's own; ``samples`` is the number of
-    extra frames timed after the images are taken. ``inspect`` is called with every texture of
-    one more frame, so that reading them back disturbs no figure. ``take_frame`` is handed the file name and pixels of
-    every ``{frame}`` output as soon as it is there, and the result keeps none of them: a long run needs no more memory
-    than a short one, and an interrupted one has written what it finished.
-    """
-
-    size: tuple[int, int] | None = None
-    frames: int | None = None
-    samples: int = 5
-    scene: str | None = None
-    captures: tuple[str, ...] = ()
-    inspect: Inspect | None = None
-    take_frame: Callable[[str, Pixels], None] | None = None
-    poison: bool = False
-    full: bool = False
-    check_finite: bool = False
-    device: int | None = None
-    plan: PlanOptions = field(default_factory=PlanOptions)
 
 
 def render_document(
@@ -60,7 +35,11 @@ def render_document(
         document, options.plan, scene=options.scene, size=options.size, frames=options.frames, full=options.full
     )
     _check_files(planned, document, options.captures)
-    return run_plan(planned, document, open_device(options.device), options, progress)
+    device = open_device(options.device)
+    result = run_plan(planned, document, device, options, progress)
+    if options.afterwards is not None:
+        options.afterwards(planned, device)
+    return result
 
 
 def _check_files(planned: PlannedDocument, document: Document, captures: tuple[str, ...]) -> None:
@@ -85,13 +64,11 @@ def run_plan(
     planned: PlannedDocument, document: Document, device: Device, options: RenderOptions, progress: Progress
 ) -> FrameResult:
     """Run a plan's frames; see :func:`render_document`."""
-    plan = planned.plan
-    cameras = frame_cameras(planned)
-    runner = Runner(device, plan, planned.scene.scene if planned.scene else None, cameras, poison=options.poison)
+    session = Session(document, planned, device, options)
     try:
-        runner.prepare(lambda done, total: progress("compiling", done, total))
-        count = plan.graph.frame.count
-        files = {name: document.model.outputs[name].file for name in plan.graph.outputs}
+        session.prepare(lambda done, total: progress("compiling", done, total))
+        count = planned.plan.graph.frame.count
+        files = {name: document.model.outputs[name].file for name in planned.plan.graph.outputs}
         images: dict[str, Pixels] = {}
         captures: dict[str, Pixels] = {}
         names: dict[str, str] = {}
@@ -100,24 +77,25 @@ def run_plan(
             progress("rendering", index, count)
             start = time.perf_counter_ns()
             wanted = options.captures if index == count - 1 else ()
-            captures |= runner.run_frame(index, capture=wanted, check_finite=options.check_finite)
+            captures |= session.frame(capture=wanted, check_finite=options.check_finite)
             device.finish()
             if index == 0:
                 first_ns, after_first = time.perf_counter_ns() - start, device.counters.snapshot()
             for name, file in files.items():
                 if "{frame}" in file:
-                    key, pixels = f"{name}@{index}", runner.read(name, index)
+                    key, pixels = f"{name}@{index}", session.read(name)
                     names[key] = file.replace("{frame}", f"{index:04d}")
                     if options.take_frame is not None:
                         options.take_frame(names[key], pixels)
                     else:
                         images[key] = pixels
                 elif index == count - 1:
-                    images[name], names[name] = runner.read(name, index), file
+                    images[name], names[name] = session.read(name), file
+        runner = session.runner
         warm_up = WARM_UP if options.samples else 0
         for index in range(count, count + warm_up):
             runner.run_frame(index)
-        steady = device.counters - after_first
+        steady = device.counters - after_first - session.made_by_switches
         following = count + warm_up
         if options.inspect is not None:
             progress("reading targets", 0, 1)
@@ -128,15 +106,15 @@ def run_plan(
         clock = choose_clock(device)
         frames, handed, steps = runner.time_frames(following, options.samples, clock, progress)
         return FrameResult(
-            plan=plan,
+            plan=session.plan,
             images=images,
             files=names,
             captures=captures,
             times=RunTimes(
                 planned.plan_ns,
                 planned.scene_ns,
-                runner.compile_ns,
-                runner.upload_ns,
+                session.compile_ns,
+                session.upload_ns,
                 first_ns,
                 frames,
                 steps,
@@ -148,19 +126,14 @@ def run_plan(
                 device.info.renderer, device.info.vendor, device.info.driver, clock.name, asdict(clock.proof)
             ),
             frames=count,
-            warnings=(*planned.warnings, *device.debug.take_warnings()),
+            warnings=(*planned.warnings, *session.notes, *device.debug.take_warnings()),
             counters=counters,
+            switches=tuple(session.switches),
         )
     finally:
-        runner.release()
+        session.close()
 
 
 def frame_cameras(planned: PlannedDocument) -> list[Camera]:
-    """One camera a frame: the scene's, moved along its orbit; a default one for graphs without a scene."""
-    count = planned.plan.graph.frame.count
-    if planned.scene is None:
-        return [Camera((0.0, 0.0, 1.0), (0.0, 0.0, 0.0))] * count
-    camera, turns = planned.scene.camera, planned.scene.orbit_turns
-    if not turns:
-        return [camera] * count
-    return [orbit(camera, turns * index / count) for index in range(count)]
+    """One camera a frame; see :func:`rendergraph.run.plan_document.scene_cameras`."""
+    return scene_cameras(planned.scene, planned.plan.graph.frame.count)

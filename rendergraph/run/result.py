@@ -76,6 +76,22 @@ class SteadyState:
 
 
 @dataclass(frozen=True, slots=True)
+class Switch:
+    """A frame before which the scene changed: the number of the plan that runs from it on (0 the first), whether it had
+    run before, what the change made and sent, and which history content was handed on or starts from zeros.
+    """
+
+    frame: int
+    plan: int
+    revisited: bool
+    objects_created: int
+    programs_compiled: int
+    bytes_uploaded: int
+    history_kept: tuple[str, ...] = ()
+    history_cleared: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class DeviceFacts:
     """Who ran it: strings for the record, and the clock with its proof."""
 
@@ -104,6 +120,7 @@ class FrameResult:
     frames: int
     warnings: tuple[Diagnostic, ...] = ()
     counters: tuple[StepCounters, ...] = ()
+    switches: tuple[Switch, ...] = ()
 
     def _repr_html_(self) -> str:
         from rendergraph.report.notebook import result_html

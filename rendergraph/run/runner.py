@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from rendergraph.device import enums
-from rendergraph.device.buffers import create_buffer
+from rendergraph.device.buffers import create_buffer, upload_buffer
 from rendergraph.device.context import Device
 from rendergraph.device.programs import LinkedProgram, compile_program
+from rendergraph.device.texels import Poison
 from rendergraph.plan.graph import DrawScene
 from rendergraph.plan.plan import Plan
 from rendergraph.run.allocation import Allocation
@@ -21,7 +22,9 @@ from rendergraph.run.frame_constants import STRIDE, pack_frames
 from rendergraph.run.geometry import SceneGeometry
 from rendergraph.run.readback import read_resource
 from rendergraph.run.result import Pixels, StepCounters, StepTimes
+from rendergraph.run.scene_store import SceneStore
 from rendergraph.run.state import restore_defaults
+from rendergraph.scene.floating_origin import camera_from, device_origin, scene_from
 from rendergraph.scene.scene import Camera, Scene
 
 if TYPE_CHECKING:
@@ -34,17 +37,28 @@ Inspect = Callable[[str, Pixels], None]
 class Runner:
     """One plan on one device. Call :meth:`prepare` once, :meth:`run_frame` for each frame, :meth:`release` at the end.
 
-    ``cameras`` holds one camera a frame; later frames reuse the last.
+    ``cameras`` holds one camera a frame; later frames reuse the last. ``poison`` fills transient resources before their
+    first use (True: with NaN). ``store`` is the scene's vertices and textures where they are on the device already.
     """
 
     def __init__(
-        self, device: Device, plan: Plan, scene: Scene | None, cameras: list[Camera], *, poison: bool = False
+        self,
+        device: Device,
+        plan: Plan,
+        scene: Scene | None,
+        cameras: list[Camera],
+        *,
+        poison: bool | Poison = False,
+        store: SceneStore | None = None,
     ) -> None:
         self._device = device
         self._plan = plan
-        self._scene = scene
-        self._cameras = cameras
-        self._poison = poison
+        #: Where the device's origin is in the world: what passes see, and their references, is placed from it.
+        self.origin = device_origin(cameras)
+        self._scene = scene_from(scene, self.origin) if scene is not None else None
+        self._cameras = [camera_from(camera, self.origin) for camera in cameras]
+        self._poison: Poison | None = "nan" if poison is True else poison or None
+        self._store = store
         self._owned_before = set(device.owned)
         self.compile_ns = 0
         self.upload_ns = 0
@@ -58,9 +72,9 @@ class Runner:
         self._geometry: SceneGeometry | None = None
         if self._scene is not None:
             replays = frozenset(s.work.instances for s in plan.order if isinstance(s.work, DrawScene))
-            self._geometry = SceneGeometry(device, self._scene, self._cameras, replays)
-        blocks = pack_frames(plan.graph.frame, self._scene, self._cameras)
-        self._frame_block = create_buffer(device, blocks, "Frame")
+            self._geometry = SceneGeometry(device, self._scene, self._cameras, replays, self._store)
+        self._frames_packed = pack_frames(plan.graph.frame, self._scene, self._cameras)
+        self._frame_block = create_buffer(device, self._frames_packed, "Frame")
         self._storage = Allocation(device, plan)
         self._commands = [self._build(parity) for parity in range(self._storage.parities)]
         device.finish()
@@ -83,7 +97,37 @@ class Runner:
             self._device, self._plan, self._storage, self._geometry, self._programs, parity, poison=self._poison
         ).build()
 
+    def change_scene(
+        self, scene: Scene, cameras: list[Camera], *, first: int = 0, before: Camera | None = None
+    ) -> bool:
+        """Let frames from ``first`` on show another state of the scene, uploading what differs; ``before`` is the
+        camera of the frame before. False, and nothing is done, where the recorded commands cannot draw it.
+        """
+        scene = scene_from(scene, self.origin)
+        cameras = [camera_from(camera, self.origin) for camera in cameras]
+        if self._geometry is None or len(cameras) != len(self._cameras) or not self._geometry.change(scene, cameras):
+            return False
+        self._scene, self._cameras = scene, cameras
+        seen = list(cameras)
+        if before is not None and 0 < first <= len(seen):
+            seen[first - 1] = camera_from(before, self.origin)
+        packed = pack_frames(self._plan.graph.frame, scene, seen)
+        if packed != self._frames_packed:
+            upload_buffer(self._device, self._frame_block, packed)
+            self._frames_packed = packed
+        return True
+
     # ---- frames
+
+    @property
+    def plan(self) -> Plan:
+        """What it runs."""
+        return self._plan
+
+    @property
+    def storage(self) -> Allocation:
+        """Where the plan's resources live; after :meth:`prepare`."""
+        return self._storage
 
     def commands_of(self, index: int) -> list[Command]:
         """Point the frame's constants and draw commands at frame ``index``; its commands."""
@@ -123,9 +167,9 @@ class Runner:
         self._device.check()
         return captured
 
-    def read(self, name: str, index: int) -> Pixels:
+    def read(self, name: str, index: int, *, mip: int = 0, aspect: str = "color") -> Pixels:
         """A resource's content after frame ``index``: ``[height, width, channels]``, first row at the bottom."""
-        return read_resource(self._device, self._storage, name, index)
+        return read_resource(self._device, self._storage, name, index, mip=mip, aspect=aspect)
 
     # ---- counts
 

@@ -6,13 +6,38 @@ from dataclasses import dataclass, fields, replace
 
 
 @dataclass(frozen=True, slots=True)
+class ViewFeatures:
+    """What is certain of what the cameras of a run see. All of it is conservative: what is not proven is not claimed.
+
+    - ``unseen``: features that the scene has and that no instance in any view has, by their names in SceneFeatures.
+    - ``lit``: whether a local light may reach a view.
+    - ``casters``: whether anything solid may stand between the sun and what is in view.
+    - ``depth_range``: view depths [m] between which all that is in view lies, in steps of a factor of two so that a
+      moving camera keeps its plan; None when nothing is in view.
+    - ``near``: the nearest near plane [m].
+    - ``covered``: opaque triangles fill every view, without a hole.
+    """
+
+    unseen: frozenset[str] = frozenset()
+    lit: bool = True
+    casters: bool = True
+    depth_range: tuple[float, float] | None = None
+    near: float = 0.0
+    covered: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class SceneFeatures:
-    """The scene's feature set. Booleans name what a shader must handle; counts size what a pass must allocate."""
+    """The scene's feature set. Booleans name what a shader must handle; counts size what a pass must allocate.
+
+    ``area_lights`` is 0: scenes have none yet. ``view`` is None where the cameras are not known.
+    """
 
     opaque: bool = False
     masked: bool = False
     blended: bool = False
     double_sided: bool = False
+    unlit: bool = False
     emissive: bool = False
     normal_mapped: bool = False
     occlusion_mapped: bool = False
@@ -26,11 +51,13 @@ class SceneFeatures:
     ambient: bool = False
     point_lights: int = 0
     spot_lights: int = 0
+    area_lights: int = 0
     triangles: int = 0
     draws: int = 0
     materials: int = 0
     texture_arrays: int = 0
     texture_slots: int = 0  # bit per slot of Material.textures (shaders/scene.glsl) that some drawn material fills
+    view: ViewFeatures | None = None
 
     @property
     def local_lights(self) -> int:
@@ -38,5 +65,6 @@ class SceneFeatures:
         return self.point_lights + self.spot_lights
 
     def full(self) -> SceneFeatures:
-        """Everything switched on, counts kept: what a run without specialisation assumes."""
-        return replace(self, **{f.name: True for f in fields(self) if isinstance(getattr(self, f.name), bool)})
+        """Everything switched on, counts kept, nothing known of the view: what a run without specialisation assumes."""
+        on = {f.name: True for f in fields(self) if isinstance(getattr(self, f.name), bool)}
+        return replace(self, **on, view=None)

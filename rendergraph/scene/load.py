@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rendergraph.document.messages import Diagnostic, RenderGraphError, diagnose
-from rendergraph.document.scene_models import CameraModel, LightsModel, PointsModel, SceneModel, SpotModel
+from rendergraph.document.scene_models import CameraModel, LightsModel, PointsModel, SceneModel, SpotModel, SunModel
 from rendergraph.document.suggest import did_you_mean
 from rendergraph.plan.graph import Position
 from rendergraph.scene import procedural
@@ -33,13 +33,26 @@ class LoadedScene:
     """A scene ready to render: its lights are final; ``camera`` is the one to use, not one of ``scene.cameras``.
 
     ``orbit_turns``: turns of the camera around its target over the run's frames; ``notes`` tell what was filled in
-    (severity ``note``).
+    (severity ``note``). ``hidden`` are the nodes and materials left out of it, by name; ``own`` the lights it came
+    with. ``whole`` is the scene before any change (``None``: this one).
     """
 
     scene: Scene
     camera: Camera
     orbit_turns: float = 0.0
     notes: tuple[Diagnostic, ...] = ()
+    hidden: frozenset[str] = frozenset()
+    own: OwnLights | None = None
+    whole: LoadedScene | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class OwnLights:
+    """The lights of a scene's file, before the graph's."""
+
+    lights: tuple[Light, ...]
+    sun: Sun | None
+    ambient: Ambient | None
 
 
 def load_scene(
@@ -75,10 +88,11 @@ def load_scene(
     scene = _geometry(source, root, detail=model.detail, seed=scene_seed)
     if not scene.instances:
         notes.append(diagnose("RG656", position, source=source))
-    notes += _apply_lights(scene, model.lights, frame_seed, position)
-    camera = _camera(scene, camera_model, camera_position or position)
+    own = OwnLights(tuple(scene.lights), scene.sun, scene.ambient)
+    notes += apply_lights(scene, model.lights, frame_seed, position)
+    camera = place_camera(scene, camera_model, camera_position or position)
     orbit_turns = camera_model.orbit.turns if camera_model.orbit is not None else 0.0
-    return LoadedScene(scene, camera, orbit_turns, tuple(notes))
+    return LoadedScene(scene, camera, orbit_turns, tuple(notes), own=own)
 
 
 def _geometry(source: str, root: Path, *, detail: float, seed: int) -> Scene:
@@ -92,7 +106,7 @@ def _geometry(source: str, root: Path, *, detail: float, seed: int) -> Scene:
 # ---------------------------------------------------------------- camera
 
 
-def _camera(scene: Scene, model: CameraModel, position: Position | None) -> Camera:
+def place_camera(scene: Scene, model: CameraModel, position: Position | None) -> Camera:
     """The model's camera: placed, by name, the scene's first, or one that frames the bounds; in this order."""
     if model.name is not None:
         base = next((c for c in scene.cameras if model.name in (c.name, c.node)), None)
@@ -134,7 +148,7 @@ def _target(scene: Scene, model: CameraModel, base: Camera) -> tuple[float, floa
 # ---------------------------------------------------------------- lights
 
 
-def _apply_lights(scene: Scene, model: LightsModel, frame_seed: int, position: Position | None) -> list[Diagnostic]:
+def apply_lights(scene: Scene, model: LightsModel, frame_seed: int, position: Position | None) -> list[Diagnostic]:
     """Replace the scene's lights by the model's, joined with its own where ``from_scene``.
 
     A scene left without any light gets a default sun and sky; one with a sun alone a default sky.
@@ -142,8 +156,7 @@ def _apply_lights(scene: Scene, model: LightsModel, frame_seed: int, position: P
     if not model.from_scene:
         scene.lights, scene.sun, scene.ambient = [], None, None
     if model.sun is not None:
-        x, y, z = _unit(model.sun.direction)
-        scene.sun = Sun((x, y, z), _scaled(model.sun.color, model.sun.illuminance))
+        scene.sun = make_sun(model.sun)
     if model.ambient is not None:
         scene.ambient = Ambient(model.ambient.sky, model.ambient.ground)
     if model.points is not None:
@@ -165,6 +178,12 @@ def _apply_lights(scene: Scene, model: LightsModel, frame_seed: int, position: P
         return []
     scene.sun, scene.ambient = _DEFAULT_SUN, _DEFAULT_AMBIENT
     return [diagnose("RG654", position, scene=scene.name)]
+
+
+def make_sun(model: SunModel) -> Sun:
+    """The model's sun."""
+    x, y, z = _unit(model.direction)
+    return Sun((x, y, z), _scaled(model.color, model.illuminance))
 
 
 def _scattered(scene: Scene, points: PointsModel, seed: int) -> list[Light]:

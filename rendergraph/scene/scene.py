@@ -299,6 +299,7 @@ class Scene:
             masked=any(m.alpha is Alpha.MASKED for m in used),
             blended=any(m.alpha is Alpha.BLENDED for m in used),
             double_sided=any(m.double_sided for m in used),
+            unlit=any(m.unlit for m in used),
             emissive=any(any(m.emissive) for m in used),
             normal_mapped=any(m.normal_texture is not None for m in used),
             occlusion_mapped=any(m.occlusion_texture is not None for m in used),

@@ -1,9 +1,18 @@
 // A fragment's surface, from its interpolated vertex and its material.
 //
-//   NORMAL_MAP  some material of the scene has a normal map
+//   NORMAL_MAP     some material of the scene has a normal map
+//   BACK_FACES     some material shows its back; else faces are not told apart
+//   UNLIT_SURFACES some material is not lit
 //   textures.glsl and varyings.glsl list what else a scene may lack
 #ifndef SURFACE_GLSL
 #define SURFACE_GLSL
+
+#ifndef BACK_FACES
+#define BACK_FACES 1
+#endif
+#ifndef UNLIT_SURFACES
+#define UNLIT_SURFACES 1
+#endif
 
 #include <scene.glsl>
 #include <textures.glsl>
@@ -86,8 +95,11 @@ vec3 shading_normal(vec3 texel) {
     }
 #endif
     // Front faces are set per draw with mirrored transforms in mind, so gl_FrontFacing needs no correction.
+#if BACK_FACES
     bool flip = (materials[vertex.material].flags & DOUBLE_SIDED) != 0u && !gl_FrontFacing;
-    return flip ? -normal : normal;
+    normal = flip ? -normal : normal;
+#endif
+    return normal;
 }
 
 Surface fetch_surface() {
@@ -119,7 +131,11 @@ Surface fetch_surface() {
     s.roughness = clamp(factors.y * texels[SLOT_METALLIC_ROUGHNESS].g, 0.0, 1.0);
     s.occlusion = 1.0 + factors.w * (texels[SLOT_OCCLUSION].r - 1.0);
     s.emissive = materials[vertex.material].emissive.rgb * texels[SLOT_EMISSIVE].rgb;
+#if UNLIT_SURFACES
     s.unlit = (materials[vertex.material].flags & UNLIT) != 0u;
+#else
+    s.unlit = false;
+#endif
     return s;
 }
 #endif

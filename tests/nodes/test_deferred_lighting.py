@@ -9,7 +9,7 @@ import pytest
 from shader_function import run_shader_function
 
 from rendergraph.device.context import Device
-from rendergraph.nodes.deferred_lighting import reference
+from rendergraph.nodes.deferred_lighting import textbook
 
 pytestmark = pytest.mark.gpu
 
@@ -60,7 +60,7 @@ def brdf_rows(count: int = 200_000) -> np.ndarray:
 
 def brdf_truth(rows: np.ndarray) -> np.ndarray:
     r = rows.astype(np.float64)
-    return reference.brdf_cosine(r[:, 0:3], r[:, 3:6], r[:, 6:9], r[:, 9:12], r[:, 12], r[:, 13])
+    return textbook.brdf_cosine(r[:, 0:3], r[:, 3:6], r[:, 6:9], r[:, 9:12], r[:, 12], r[:, 13])
 
 
 def brdf_error(result: np.ndarray, truth: np.ndarray) -> float:
@@ -152,10 +152,10 @@ def test_attenuation_matches_float64(device: Device, tmp_path: Path) -> None:
     rows = np.stack([distance, radius, cosine, np.cos(inner), np.cos(outer)], axis=1).astype(np.float32)
     result = attenuate(device, tmp_path, rows)
     r = rows.astype(np.float64)
-    truth = reference.attenuation(r[:, 0], r[:, 1])
+    truth = textbook.attenuation(r[:, 0], r[:, 1])
     peak = 1.0 / np.maximum(r[:, 0], 0.01) ** 2
     assert (np.abs(result[:, 0] - truth) / peak).max() < 2e-6
-    spot = reference.cone(r[:, 2], np.arccos(r[:, 3]), np.arccos(r[:, 4]))
+    spot = textbook.cone(r[:, 2], np.arccos(r[:, 3]), np.arccos(r[:, 4]))
     assert np.abs(result[:, 1] - spot).max() < 1e-2  # a cosine's last digit against the narrowest cones' width
     assert np.median(np.abs(result[:, 1] - spot)) < 1e-6
     wrong_window = np.clip(1 - (r[:, 0] / r[:, 1]) ** 2, 0, 1) ** 2 / np.maximum(r[:, 0], 0.01) ** 2
@@ -197,6 +197,6 @@ ENVIRONMENT = """
 def test_environment_fit_is_close_to_the_integral(device: Device, tmp_path: Path) -> None:
     rows = np.array([[c, r, f] for c in (0.1, 0.3, 0.6, 1.0) for r in (0.1, 0.3, 0.6, 1.0) for f in (0.04, 0.5, 1.0)])
     result = run_shader_function(device, tmp_path, ENVIRONMENT, rows, 1, includes=("brdf.glsl",))[:, 0]
-    truth = np.array([reference.directional_albedo(*row) for row in rows])
+    truth = np.array([textbook.directional_albedo(*row) for row in rows])
     assert np.abs(result - truth).max() < 0.06
     assert np.abs(rows[:, 2] - truth).max() > 0.3  # f0 alone, without the fit

@@ -12,7 +12,7 @@ from scene_render import Quad, quad_scene, render_scene
 from rendergraph.device.context import Device
 from rendergraph.document.load import load_document
 from rendergraph.document.messages import RenderGraphError
-from rendergraph.nodes.deferred_lighting import reference
+from rendergraph.nodes.deferred_lighting import textbook
 from rendergraph.nodes.deferred_lighting.light_model import MOST_UNIFORM_LIGHTS
 from rendergraph.plan.expand import expand
 from rendergraph.plan.graph import Frame
@@ -95,8 +95,8 @@ def truth(images: dict[str, np.ndarray], scene: Scene, camera: Camera = CAMERA) 
     channel = {
         name: images[name][covered].astype(np.float64) for name in ("normal", "base_color", "material", "emissive")
     }
-    return covered, reference.shade(
-        world[:, :3] / world[:, 3:], reference.normalize(channel["normal"][:, :3]), channel["base_color"][:, :3],
+    return covered, textbook.shade(
+        world[:, :3] / world[:, 3:], textbook.normalize(channel["normal"][:, :3]), channel["base_color"][:, :3],
         channel["material"][:, 0], channel["material"][:, 1], channel["material"][:, 2], channel["emissive"][:, :3],
         scene=scene, eye=np.array(camera.position),
     )  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -16,6 +16,9 @@ from rendergraph.plan.graph import TextureDesc, Usage
 from rendergraph.scene.cameras import view_matrix
 from rendergraph.scene.features import SceneFeatures
 from rendergraph.scene.scene import Camera
+
+if TYPE_CHECKING:
+    from tests.conftest import Hardware
 
 Vec3 = tuple[float, float, float]
 
@@ -181,7 +184,7 @@ def test_disc_equals_float64(device: Device, tmp_path: Path, radius: float) -> N
         return float(np.abs(got - want).max() / want.max())
 
     assert error(radius) < 2e-4  # of the disc: the last bits of an angle decide how much of a pixel is covered
-    assert error(radius * 1.02) > 2e-3  # the twin
+    assert error(radius * 2.0) > 2e-3  # the twin; below a pixel, a slightly larger disc is as bright
 
 
 @pytest.mark.gpu
@@ -195,23 +198,27 @@ def test_gradient_equals_float64(device: Device, tmp_path: Path, sun: Vec3 | Non
 
 
 @pytest.mark.gpu
-def test_unspecialised_run_gives_the_same_image(device: Device, tmp_path: Path) -> None:
+def test_unspecialised_run_gives_the_same_image(device: Device, hardware: Hardware, tmp_path: Path) -> None:
     plain = drawn(tmp_path, None, (0.0, 0.0, 0.0), {})
-    np.testing.assert_array_equal(plain, drawn(tmp_path, None, (0.0, 0.0, 0.0), {}, full=True))
+    full = drawn(tmp_path, None, (0.0, 0.0, 0.0), {}, full=True)
+    np.testing.assert_allclose(full, plain, rtol=hardware.arithmetic, atol=0.0)
+    assert not np.allclose(full * (1.0 + 2.0**-20), plain, rtol=hardware.arithmetic, atol=0.0)  # the twin
 
 
 @pytest.mark.gpu
-def test_the_disc_carries_the_suns_irradiance(device: Device, tmp_path: Path) -> None:
-    # Towards a low sun, whose disc of 6 degrees spans 9 pixels: the sum of radiance times solid angle.
+@pytest.mark.parametrize(("radius", "within"), [(6.0, 0.01), (0.7, 0.06), (0.2665, 0.12)])
+def test_the_disc_carries_the_suns_irradiance(device: Device, tmp_path: Path, radius: float, within: float) -> None:
+    # Towards a low sun: the sum of radiance times solid angle. A disc of 6 degrees spans 9 pixels; the sun's own is
+    # half a pixel wide, and what the pixel centres sample of its ramp depends on where it lies between them.
     sun = (0.0, 0.2, -1.0)
-    with_disc = drawn(tmp_path, sun, (0.0, 0.0, 0.0), {"sun_radius": 6.0})[..., :3]
+    with_disc = drawn(tmp_path, sun, (0.0, 0.0, 0.0), {"sun_radius": radius})[..., :3]
     without = drawn(tmp_path, sun, (0.0, 0.0, 0.0), {"sun_radius": 0.0})[..., :3]
     rays = directions()
     forward = np.array([0.0, 0.15, -1.0]) / math.hypot(1.0, 0.15)
     solid_angle = (2.0 / HEIGHT * math.tan(math.radians(30))) ** 2 * (rays @ forward) ** 3
     facing = rays @ (np.array(sun) / np.linalg.norm(sun))
     irradiance = ((with_disc - without) * (solid_angle * facing)[..., None]).sum(axis=(0, 1))
-    np.testing.assert_allclose(irradiance, (5.0, 4.8, 4.5), rtol=0.02)
+    np.testing.assert_allclose(irradiance, (5.0, 4.8, 4.5), rtol=within)
 
 
 @pytest.mark.gpu

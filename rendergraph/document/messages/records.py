@@ -65,9 +65,23 @@ ROWS: Final[dict[str, Message]] = {
     ),
     "RG709": Message(
         "note",
-        "the budget of flip is not checked yet",
-        "compare the image with its reference by hand for now",
-        "FLIP needs a reference image, and no command compares with one yet. The limit is read and kept.",
+        "the budget of {what} was not checked: it takes references",
+        "render with --reference",
+        "Errors are known only where passes are held against their references, which can take long: `rg render` does "
+        "so with --reference.",
+    ),
+    "RG710": Message(
+        "error",
+        "pass '{name}': {measure} has {metric} {found}, its budget is {limit:g}",
+        "{hint}",
+        "Each measure of the pass's reference is compared, by the metric that the node states, with `budget.error`.",
+    ),
+    "RG711": Message(
+        "error",
+        "output '{name}' of pass '{writer}' has a mean FLIP error of {found:.6g}, the budget is {limit:g}",
+        "{hint}",
+        "The images that passes with a reference write into the graph's outputs are compared with their truths by "
+        "FLIP, the difference that is seen when both alternate on a screen.",
     ),
     # -- plan locks
     "RG720": Message("error", "cannot compare the plan with '{path}': {reason}", "{hint}"),
@@ -104,7 +118,7 @@ ROWS: Final[dict[str, Message]] = {
     "RG732": Message(
         "error",
         "'{path}' is not a record that can be compared: {reason}",
-        "give a folder written by `rg render`, its timing.json or resources.json, or a file written by `rg bench`",
+        "give a folder written by `rg render`, a record in it, or a file written by `rg bench`",
     ),
     "RG733": Message(
         "error",

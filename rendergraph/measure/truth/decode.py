@@ -19,7 +19,8 @@ def decode(texels: npt.NDArray[Any], format: str) -> F64:
     to -1; sRGB colours are decoded, their alpha is not (8.24). Integers, floats and depth are what they are.
     """
     row = FORMATS[format]
-    values = texels.astype(np.float64)
+    with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
+        values = texels.astype(np.float64)
     if not np.issubdtype(texels.dtype, np.integer) or row.channel in (Channel.UINT, Channel.INT):
         return values
     values = np.maximum(values / np.iinfo(texels.dtype).max, -1.0)

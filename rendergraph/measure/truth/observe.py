@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -10,9 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from rendergraph.device.context import Device
+from rendergraph.document.formats import FORMATS
 from rendergraph.document.load import Document
 from rendergraph.document.messages import RenderGraphError, diagnose
 from rendergraph.measure.truth.decode import F64, decode
+from rendergraph.measure.truth.surfaces import cached_trace
 from rendergraph.node.discovery import find_node
 from rendergraph.node.params import Params
 from rendergraph.node.reference import PassRun
@@ -21,6 +23,7 @@ from rendergraph.plan.plan import PlanOptions
 from rendergraph.run.plan_document import PlannedDocument, plan_document
 from rendergraph.run.render import frame_cameras
 from rendergraph.run.runner import Runner
+from rendergraph.scene.floating_origin import camera_from, scene_from
 
 Content = F64 | npt.NDArray[np.uint32]
 
@@ -47,14 +50,46 @@ def observe(
         runner.prepare()
         for index in range(last):
             runner.run_frame(index)
-        return _watch(runner, document, planned, device, set(passes), last)
+        return watch_frame(runner, document, planned, device, set(passes), last)
     finally:
         runner.release()
 
 
-def _watch(
-    runner: Runner, document: Document, planned: PlannedDocument, device: Device, passes: set[str], index: int
+def observe_frames(
+    document: Document, planned: PlannedDocument, device: Device, passes: Iterable[str], count: int
+) -> Iterator[dict[str, PassRun]]:
+    """The same of the file's last frame and of ``count - 1`` more after it, in which the camera stands still: what
+    still changes is the frame's index, and with it all that is random. One frame is held at a time.
+    """
+    last = planned.plan.graph.frame.count - 1
+    cameras = frame_cameras(planned)
+    cameras += [cameras[-1]] * (count - 1)
+    runner = Runner(device, planned.plan, planned.scene.scene if planned.scene else None, cameras)
+    names = set(passes)
+    try:
+        runner.prepare()
+        for index in range(last):
+            runner.run_frame(index)
+        for index in range(last, last + count):
+            yield watch_frame(runner, document, planned, device, names, index)
+    finally:
+        runner.release()
+
+
+def watch_frame(
+    runner: Runner,
+    document: Document,
+    planned: PlannedDocument,
+    device: Device,
+    passes: set[str],
+    index: int,
+    after: Callable[[int], None] = lambda position: None,
+    prepare: Callable[[str], None] = lambda name: None,
 ) -> dict[str, PassRun]:
+    """One frame of a runner that is ready: what the named passes saw and did. ``after`` is called behind each command,
+    with its position in the plan's order; ``prepare`` with a pass's name before its inputs are looked at, which it may
+    change.
+    """
     plan = planned.plan
     of = [subpass.name.partition(".")[0] for subpass in plan.order]
     first = {name: of.index(name) for name in passes if name in of}
@@ -63,14 +98,19 @@ def _watch(
     before: dict[str, dict[str, Content]] = {}
     runs = {}
     cameras = frame_cameras(planned)
+    scene = scene_from(planned.scene.scene, runner.origin) if planned.scene else None
+    camera = camera_from(cameras[min(index, len(cameras) - 1)], runner.origin)
+    trace = cached_trace(scene, camera, plan.graph.frame) if scene else None  # one for all passes
     for position, command in enumerate(runner.commands_of(index)):
         for name in (name for name, at in first.items() if at == position):
             model = document.model.passes[name]
+            prepare(name)
             inputs[name] = _contents(runner, planned, model.read, index)
             node = find_node(model.node)(_params(document, name))
             modified = {port: target for port, target in model.write.items() if node.modifies(port)}
             before[name] = _contents(runner, planned, modified, index)
         command.run()
+        after(position)
         for name in (name for name, at in final.items() if at == position):
             model = document.model.passes[name]
             ports = {**model.read, **model.write}
@@ -82,9 +122,13 @@ def _watch(
                 frame=plan.graph.frame,
                 before=before[name],
                 index=index,
-                scene=planned.scene.scene if planned.scene else None,
-                camera=cameras[min(index, len(cameras) - 1)],
+                folder=document.path.parent,
+                levels=_levels(runner, planned, model.write, index),
+                stencils=_stencils(runner, planned, model.write, index),
+                scene=scene,
+                camera=camera,
                 supersampled=partial(supersampled, document, planned, device, name),
+                trace=trace,
             )
     device.check()
     return runs
@@ -101,6 +145,27 @@ def _contents(runner: Runner, planned: PlannedDocument, ports: Mapping[str, str]
         for port, resource in ports.items()
         if resource in planned.plan.lifetimes
     }
+
+
+def _levels(
+    runner: Runner, planned: PlannedDocument, ports: Mapping[str, str], index: int
+) -> dict[str, tuple[F64, ...]]:
+    levels = {}
+    for port, resource in ports.items():
+        desc = planned.plan.graph.resources[resource].desc
+        if resource in planned.plan.lifetimes and isinstance(desc, TextureDesc) and desc.mips > 1 and desc.layers == 1:
+            read = [runner.read(resource, index, mip=mip) for mip in range(1, desc.mips)]
+            levels[port] = tuple(decode(texels, desc.format) for texels in read)
+    return levels
+
+
+def _stencils(runner: Runner, planned: PlannedDocument, ports: Mapping[str, str], index: int) -> dict[str, F64]:
+    stencils = {}
+    for port, resource in ports.items():
+        desc = planned.plan.graph.resources[resource].desc
+        if resource in planned.plan.lifetimes and isinstance(desc, TextureDesc) and FORMATS[desc.format].stencil:
+            stencils[port] = runner.read(resource, index, aspect="stencil").astype(np.float64)
+    return stencils
 
 
 def content(runner: Runner, planned: PlannedDocument, resource: str, index: int) -> Content:

@@ -43,8 +43,11 @@ def html_page(
     timing: dict[str, Any] | None = None,
     targets: TargetGallery | None = None,
     warnings: Sequence[Diagnostic] = (),
+    accuracy: Sequence[dict[str, Any]] | None = None,
 ) -> str:
-    """One self-contained page: of a plan alone, or with the ``timing`` record and ``targets`` of a run of it."""
+    """One self-contained page: of a plan alone, or with the ``timing`` record and ``targets`` of a run of it, and
+    ``accuracy`` (:func:`rendergraph.report.html.accuracy.accuracy_entries`) where it was held against references.
+    """
     timed = {entry["name"] for entry in timing["passes"]} if timing else set()
     entries = target_entries(plan.graph, targets.views) if targets else []
     text: str = (
@@ -67,6 +70,7 @@ def html_page(
             barriers=[(plan.order[b.index].name, _barrier_names(b), b.hazards) for b in plan.barriers],
             decisions=list(_decisions(plan)),
             warnings=warnings,
+            accuracy=accuracy,
             agreement=agreement,
             evidence=evidence,
         )

@@ -1,0 +1,1 @@
+"""The conformance suite: what every node must show before it is done."""

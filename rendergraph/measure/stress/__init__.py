@@ -1,0 +1,1 @@
+"""`rg stress`: what a graph does at the numerical extremes."""
