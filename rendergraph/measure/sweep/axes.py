@@ -137,9 +137,8 @@ def _knob(document: Document, text: str, name: str, knob: str) -> dict[str, Any]
     properties: dict[str, Any] = node.params_type.model_json_schema().get("properties", {})
     if knob not in properties:
         problem = f"'{passes[name].node}' has no parameter '{knob}'"
-        raise RenderGraphError([
-            diagnose("RG750", _place(text), problem=problem, hint=did_you_mean(knob, properties) if properties else "it has none")
-        ])  # fmt: skip
+        hint = did_you_mean(knob, properties) if properties else "it has none"
+        raise RenderGraphError([diagnose("RG750", _place(text), problem=problem, hint=hint)])
     return dict(properties[knob])
 
 
