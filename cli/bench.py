@@ -54,6 +54,7 @@ def bench(
     from rendergraph.document.load import load_document
     from rendergraph.document.whole_files import require_file
     from rendergraph.measure.bench import Bench, bench_sides
+    from rendergraph.measure.bench_errors import check_errors
     from rendergraph.measure.bench_job import BenchJob
     from rendergraph.measure.budget import check_bench
     from rendergraph.measure.vs_full import vs_full as vs_full_of
@@ -93,7 +94,7 @@ def bench(
     over = [
         finding
         for name, side in sides.items()
-        for finding in check_bench(load_document(side.graph, side.overrides), record, name)
+        for finding in [*check_bench(load_document(side.graph, side.overrides), record, name), *check_errors(job, side)]
     ]
     report(over)
     raise typer.Exit(int(any(finding.severity == "error" for finding in over)))

@@ -143,10 +143,15 @@ class BudgetModel(Model):
     draws: int | None = Field(None, ge=0, description="Draws a frame; each draw of a multi-draw counts.")
     error: dict[Name, PassError] = Field(
         default_factory=dict,
-        description="Error of single passes, by name, in the metric that the node states; checked by --reference.",
+        description="Error of single passes, by name, in the metric that the node states; checked by `rg render "
+        "--reference` and `rg bench`.",
     )
     flip: float | None = Field(
-        None, ge=0, le=1, description="Mean FLIP error of output images against their truth; checked by --reference."
+        None,
+        ge=0,
+        le=1,
+        description="Mean FLIP error of output images against their truth; checked by `rg render "
+        "--reference` and `rg bench`.",
     )
 
 
